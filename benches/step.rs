@@ -1,0 +1,51 @@
+//! What a tick costs, and what each part of it adds: `cargo bench --bench step`.
+#![allow(clippy::disallowed_types, clippy::arithmetic_side_effects, reason = "a bench, not the engine")]
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use std::hint::black_box;
+use tamias2d::{Attractor, BodyDef, Commands, Vec2, World, WorldDef};
+
+/// `count` free bodies on a grid, each with its own velocity and spin.
+fn free_bodies(count: u32, gravity: f64) -> World {
+    let gravity = Vec2::from_f64(0.0, gravity).expect("in range");
+    let mut world = World::new(&WorldDef { gravity, ..WorldDef::default() }).expect("accepted");
+    for i in 0..count {
+        let (column, row) = (f64::from(i % 100), f64::from(i / 100));
+        world
+            .create_body(&BodyDef {
+                position: Vec2::from_f64(3.0 * column, 3.0 * row).expect("in range"),
+                velocity: Vec2::from_f64(0.01 * row - 0.3, 0.02 * column).expect("in range"),
+                angular_velocity: "0.75".parse().expect("in range"),
+                ..BodyDef::default()
+            })
+            .expect("accepted");
+    }
+    world
+}
+
+fn step(c: &mut Criterion) {
+    let mut group = c.benchmark_group("step");
+    for count in [100, 1_000, 10_000, 100_000] {
+        let mut world = free_bodies(count, -9.8);
+        group.bench_function(BenchmarkId::new("free", count), |b| b.iter(|| world.step()));
+    }
+    let mut world = free_bodies(1_000, 0.0);
+    let star =
+        Attractor { position: Vec2::from_f64(0.0, -500.0).expect("in range"), mu: "1000".parse().expect("in range") };
+    world.create_attractor(star).expect("accepted");
+    group.bench_function("attractor/1000", |b| b.iter(|| world.step()));
+    group.finish();
+
+    let mut group = c.benchmark_group("state");
+    let world = free_bodies(10_000, -9.8);
+    group.bench_function("hash/10000", |b| b.iter(|| black_box(world.hash())));
+    let mut copy = world.clone();
+    group.bench_function("clone_from/10000", |b| b.iter(|| copy.clone_from(black_box(&world))));
+    let mut bytes = Vec::new();
+    group.bench_function("save/10000", |b| b.iter(|| world.save_into(&mut bytes)));
+    group.bench_function("load/10000", |b| b.iter(|| World::load(&bytes).expect("just saved")));
+    group.finish();
+}
+
+criterion_group!(benches, step);
+criterion_main!(benches);

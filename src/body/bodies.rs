@@ -1,0 +1,170 @@
+//! The table of bodies: hot state in columns, cold data in slots.
+
+use super::def::{BodyData, BodyDef, BodyKind};
+use crate::geom::Vec2;
+use crate::num::{Angle, AngularVelocity, Length, Velocity};
+use crate::store::{Arena, BodyId, Column, DecodeError, Diff, Hasher, Reader, Record, Sink};
+
+/// Declares the table from one list of columns: struct, save, load, hash, diff and copy.
+macro_rules! table {
+    ($($(#[$doc:meta])* $column:ident: $quantity:ty, $path:literal;)*) => {
+        /// All bodies. A column has one element per slot, zero where the slot is free.
+        #[derive(Debug, Default)]
+        pub(crate) struct Bodies {
+            pub(crate) cold: Arena<BodyData>,
+            $($(#[$doc])* pub(crate) $column: Column<$quantity>,)*
+        }
+
+        impl Bodies {
+            /// Brings every column to the arena's number of slots.
+            fn grow(&mut self) {
+                $( while self.$column.len() < self.cold.len() { self.$column.push(<$quantity>::ZERO); } )*
+            }
+
+            /// The hash of the columns, each in one pass over its little-endian bytes.
+            pub(crate) fn motion_hash(&self) -> u64 {
+                let Bodies { cold: _, $($column),* } = self;
+                let mut hasher = Hasher::new();
+                $( $column.hash().save(&mut hasher); )*
+                hasher.finish()
+            }
+
+            /// Whether every slot has its element in each column.
+            fn is_rectangular(&self) -> bool {
+                true $( && self.$column.len() == self.cold.len() )*
+            }
+        }
+
+        impl Record for Bodies {
+            fn save(&self, sink: &mut impl Sink) {
+                let Bodies { cold, $($column),* } = self;
+                cold.save(sink);
+                $( $column.save(sink); )*
+            }
+
+            fn load(reader: &mut Reader<'_>, field: &'static str) -> Result<Self, DecodeError> {
+                let offset = reader.offset();
+                let cold = Record::load(reader, "bodies")?;
+                let bodies = Bodies { cold, $($column: Record::load(reader, $path)?),* };
+                bodies.check().map_err(|reason| reader.invalid(offset, field, reason))?;
+                Ok(bodies)
+            }
+
+            fn diff(&self, other: &Self, diff: &mut Diff) {
+                self.cold.diff(&other.cold, diff);
+                for slot in 0..self.cold.len().min(other.cold.len()) {
+                    diff.element(slot, |d| {
+                        $( d.field($path, |d| self.$column.get(slot).diff(&other.$column.get(slot), d)); )*
+                    });
+                }
+            }
+        }
+
+        impl Clone for Bodies {
+            fn clone(&self) -> Self {
+                let Bodies { cold, $($column),* } = self;
+                Bodies { cold: cold.clone(), $($column: $column.clone()),* }
+            }
+
+            fn clone_from(&mut self, source: &Self) {
+                let Bodies { cold, $($column),* } = source;
+                self.cold.clone_from(cold);
+                $( self.$column.clone_from($column); )*
+            }
+        }
+    };
+}
+
+table! {
+    /// The centre of mass.
+    x: Length, "position.x";
+    y: Length, "position.y";
+    vx: Velocity, "velocity.x";
+    vy: Velocity, "velocity.y";
+    /// Orientation, unwrapped turns.
+    angle: Angle, "angle";
+    /// Counter-clockwise positive.
+    omega: AngularVelocity, "angular_velocity";
+}
+
+impl Bodies {
+    /// Adds a body that [`BodyDef::check`] accepts. The caller has checked that the arena has room.
+    pub(crate) fn insert(&mut self, def: &BodyDef) -> BodyId {
+        let (index, generation) = self.cold.insert(def.data());
+        self.grow();
+        let slot = index as usize;
+        self.set_position(slot, def.position);
+        self.angle.set(slot, def.angle);
+        self.set_velocity(slot, def.velocity);
+        self.omega.set(slot, def.angular_velocity);
+        BodyId { index, generation }
+    }
+
+    /// Removes a body and leaves zeros, so that no trace of it is in the hash.
+    pub(crate) fn remove(&mut self, id: BodyId) -> bool {
+        let removed = self.cold.remove(id.index, id.generation).is_some();
+        if removed {
+            let slot = id.index as usize;
+            self.set_position(slot, Vec2::default());
+            self.angle.set(slot, Angle::ZERO);
+            self.set_velocity(slot, Vec2::default());
+            self.omega.set(slot, AngularVelocity::ZERO);
+        }
+        removed
+    }
+
+    /// The slot of a current id.
+    pub(crate) fn slot(&self, id: BodyId) -> Option<usize> {
+        self.cold.slot(id.index, id.generation)
+    }
+
+    /// The id of the body in a slot in use.
+    pub(crate) fn id(&self, slot: usize) -> Option<BodyId> {
+        Some(BodyId { index: slot as u32, generation: self.cold.generation(slot)? })
+    }
+
+    pub(crate) fn position(&self, slot: usize) -> Vec2<Length> {
+        Vec2::new(self.x.get(slot), self.y.get(slot))
+    }
+
+    pub(crate) fn set_position(&mut self, slot: usize, position: Vec2<Length>) {
+        self.x.set(slot, position.x);
+        self.y.set(slot, position.y);
+    }
+
+    pub(crate) fn velocity(&self, slot: usize) -> Vec2<Velocity> {
+        Vec2::new(self.vx.get(slot), self.vy.get(slot))
+    }
+
+    pub(crate) fn set_velocity(&mut self, slot: usize, velocity: Vec2<Velocity>) {
+        self.vx.set(slot, velocity.x);
+        self.vy.set(slot, velocity.y);
+    }
+
+    /// Every invariant of the table; what is wrong, if one is broken.
+    pub(crate) fn check(&self) -> Result<(), &'static str> {
+        self.cold.check()?;
+        if !self.is_rectangular() {
+            return Err("has columns that are not as long as its slots");
+        }
+        for slot in 0..self.cold.len() {
+            let (velocity, omega) = (self.velocity(slot), self.omega.get(slot));
+            if self.cold.generation(slot).is_none() {
+                let at_zero = self.position(slot).is_zero() && self.angle.get(slot) == Angle::ZERO;
+                if !at_zero || !velocity.is_zero() || omega != AngularVelocity::ZERO {
+                    return Err("has a free slot that moves");
+                }
+                continue;
+            }
+            let data = self.cold.value(slot);
+            debug_assert!(data.kind != BodyKind::Static || velocity.is_zero(), "a static body does not move");
+            if self.position(slot).checked().is_err() {
+                return Err("has a body outside the world");
+            }
+            if data.check(velocity, omega).is_err() {
+                return Err("has a body with a value that its kind does not have");
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,174 @@
+//! What constant acceleration does to each body in one step of the scheme: derived from the cold data, kept so that
+//! a tick does one product per coordinate, and renewed by the commands that change it.
+
+use super::damping::Decay;
+use super::gravity::Source;
+use super::integrate::{Integrator, Scheme};
+use super::span::Span;
+use crate::body::{Attractor, Bodies, BodyData};
+use crate::geom::Vec2;
+use crate::num::{Acceleration, Force, Mu, Torque, clamp_i64, div, mul, mul_div};
+use crate::store::{Arena, clone_fields, record};
+
+/// A force and a torque that act on a body for one tick.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Push {
+    pub(crate) slot: u32,
+    pub(crate) force: Vec2<Force>,
+    pub(crate) torque: Torque,
+}
+
+record!(Push { slot, force, torque });
+
+/// Fraction bits of [`Drive::bow`]: a·T²/2 ≤ 32 768/450 < 2⁷ m for T ≤ 1/15 s, and 2⁷·2⁵⁶ fits.
+const BOW_FRAC: u32 = 56;
+/// What brings a bow to the 48 + 63 fraction bits of the product v·T.
+pub(crate) const BOW_SHIFT: u32 = 48 + 63 - BOW_FRAC;
+
+/// A body with damping: its factors over the scheme's span.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Damped {
+    pub(crate) slot: u32,
+    /// Along a line, and the multiplier T·φ₁ that takes a velocity to a way.
+    pub(crate) line: Decay,
+    pub(crate) line_span: i64,
+    /// The same for turning.
+    pub(crate) turn: Decay,
+    pub(crate) turn_span: i64,
+}
+
+/// The prepared motion of all bodies. Everything in it is derived.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Drive {
+    pub(crate) scheme: Scheme,
+    pub(crate) span: Span,
+    pub(crate) half: Span,
+    /// Change of vx, vy and ω in one span, 48 fraction bits.
+    pub(crate) kick: [Vec<i64>; 3],
+    /// What acceleration adds to the way in one span: 56 fraction bits, metres and turns. Zero in stepped schemes.
+    pub(crate) bow: [Vec<i64>; 3],
+    /// Bodies with damping, by slot.
+    pub(crate) damped: Vec<Damped>,
+    /// Bodies whose constant acceleration had to be limited to its format, by slot.
+    pub(crate) limited: Vec<u32>,
+    /// What pulls: attractors by slot, then bodies by slot. Their order is the order of summation.
+    pub(crate) sources: Vec<Source>,
+}
+
+clone_fields!(Drive { scheme, span, half, kick, bow, damped, limited, sources });
+
+/// The constant acceleration of a body in m/s² and rad/s², 48 fraction bits, and whether it had to be limited.
+///
+/// Why nothing overflows: |F| ≤ 10¹⁴ N is below 2¹¹¹ in bits, shifted by 16 it fits; the sums saturate.
+pub(crate) fn acceleration(data: &BodyData, gravity: Vec2<Acceleration>, push: Option<&Push>) -> ([i64; 3], bool) {
+    if !data.is_dynamic() {
+        return ([0; 3], false);
+    }
+    let along = |force: i128, push: Option<i128>, gravity: Acceleration| {
+        let force = force.saturating_add(push.unwrap_or(0));
+        // F with 64 fraction bits over m with 32, to 48; two forces of 2¹¹¹ make 2¹¹², which still fits.
+        div(force.saturating_mul(1 << 16), data.mass.to_bits().into()).saturating_add(gravity.to_bits().into())
+    };
+    let alpha = if data.fixed_rotation {
+        0
+    } else {
+        let torque = data.torque.to_bits().saturating_add(push.map_or(0, |p| p.torque.to_bits()));
+        mul_div(torque, 1 << 48, data.inertia.to_bits())
+    };
+    let wide = [
+        along(data.force.x.to_bits(), push.map(|p| p.force.x.to_bits()), gravity.x),
+        along(data.force.y.to_bits(), push.map(|p| p.force.y.to_bits()), gravity.y),
+        alpha,
+    ];
+    let narrow = wide.map(clamp_i64);
+    (narrow, narrow.map(i128::from) != wide)
+}
+
+impl Drive {
+    /// Everything anew: after loading, and when the scheme, the span or the sources change.
+    pub(crate) fn prepare(
+        &mut self,
+        integrator: Integrator,
+        tick_rate: u32,
+        substeps: u32,
+        bodies: &Bodies,
+        attractors: &Arena<Attractor>,
+    ) {
+        self.sources.clear();
+        let fixed = attractors.iter().filter(|(_, a)| a.mu != Mu::ZERO);
+        self.sources.extend(fixed.map(|(_, a)| Source::at(a.position, a.mu)));
+        let heavy = bodies.cold.iter().filter(|(_, data)| data.mu != Mu::ZERO);
+        self.sources.extend(heavy.map(|(slot, data)| Source::carried_by(slot, data.mu)));
+
+        self.scheme = match integrator {
+            Integrator::Verlet if self.sources.is_empty() => Scheme::Exact,
+            Integrator::Verlet => Scheme::Leapfrog { substeps },
+            Integrator::SymplecticEuler => Scheme::Euler { substeps },
+        };
+        let steps = if self.scheme == Scheme::Exact { 1 } else { substeps };
+        let per_second = tick_rate.saturating_mul(steps);
+        self.span = Span::new(per_second);
+        self.half = Span::new(per_second.saturating_mul(2));
+        self.damped.clear();
+        self.limited.clear();
+        self.grow(bodies.cold.len());
+    }
+
+    /// Room for `slots` bodies.
+    pub(crate) fn grow(&mut self, slots: usize) {
+        for column in self.kick.iter_mut().chain(&mut self.bow) {
+            column.resize(slots, 0);
+        }
+    }
+
+    /// Moves the sources that bodies carry to where these are.
+    pub(crate) fn follow(&mut self, bodies: &Bodies) {
+        for source in &mut self.sources {
+            source.follow(bodies);
+        }
+    }
+
+    /// The motion of the body in `slot` from its constant acceleration and its damping.
+    pub(crate) fn set(&mut self, slot: usize, data: &BodyData, gravity: Vec2<Acceleration>, push: Option<&Push>) {
+        let Span { line, line2, turn, turn2, per_second } = self.span;
+        let decay_line = Decay::new(data.linear_damping, per_second);
+        let decay_turn = Decay::new(data.angular_damping, per_second);
+        // (v·e + a·T) for exact steps has T·φ₁ and T²·φ₂; in Euler's scheme the kick itself decays.
+        let spans = |decay: &Decay, t: i64, t2: i64| match self.scheme {
+            Scheme::Euler { .. } => (decay.slow(t), 0),
+            Scheme::Leapfrog { .. } => (decay.scale(t, 0).0, 0),
+            Scheme::Exact => decay.scale(t, t2),
+        };
+        let (kick_line, bow_line) = spans(&decay_line, line, line2);
+        let (kick_turn, bow_turn) = spans(&decay_turn, line, turn2);
+        let ([ax, ay, alpha], limited) = acceleration(data, gravity, push);
+        let kicks = [mul(ax, kick_line, 63), mul(ay, kick_line, 63), mul(alpha, kick_turn, 63)];
+        let bows = [mul(ax, bow_line, BOW_SHIFT), mul(ay, bow_line, BOW_SHIFT), mul(alpha, bow_turn, BOW_SHIFT)];
+        for (column, kick) in self.kick.iter_mut().zip(kicks) {
+            column[slot] = kick;
+        }
+        for (column, bow) in self.bow.iter_mut().zip(bows) {
+            column[slot] = bow;
+        }
+        let at = self.limited.partition_point(|&other| (other as usize) < slot);
+        match (self.limited.get(at) == Some(&(slot as u32)), limited) {
+            (true, false) => drop(self.limited.remove(at)),
+            (false, true) => self.limited.insert(at, slot as u32),
+            _ => {}
+        }
+        let at = self.damped.partition_point(|d| (d.slot as usize) < slot);
+        if self.damped.get(at).is_some_and(|d| d.slot as usize == slot) {
+            self.damped.remove(at);
+        }
+        if decay_line != Decay::NONE || decay_turn != Decay::NONE {
+            let damped = Damped {
+                slot: slot as u32,
+                line: decay_line,
+                line_span: decay_line.scale(line, 0).0,
+                turn: decay_turn,
+                turn_span: decay_turn.scale(turn, 0).0,
+            };
+            self.damped.insert(at, damped);
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Motion: forces to velocities to positions.
+//!
+//! [`Drive`] holds what constant acceleration does to each body in one step of the scheme, prepared when commands
+//! change it; [`integrate`] holds the schemes, each one function of one signature; [`gravity`] is the pull of
+//! attractors and bodies.
+
+mod damping;
+mod drive;
+pub(crate) mod gravity;
+mod integrate;
+mod span;
+
+pub(crate) use drive::{Drive, Push, acceleration};
+pub use integrate::{Bound, Integrator};
+pub(crate) use integrate::{Fault, integrate};

@@ -1,0 +1,14 @@
+//! Stored state: bytes in and out, field lists, columns, and slots with generations.
+
+mod arena;
+mod codec;
+mod column;
+mod record;
+
+pub(crate) use arena::{Arena, Row};
+pub use arena::{AttractorId, BodyId};
+pub use codec::DecodeError;
+pub(crate) use codec::{Hasher, Reader, Sink, put};
+pub(crate) use column::Column;
+pub use record::Difference;
+pub(crate) use record::{Diff, Record, clone_fields, record, record_enum};

@@ -1,0 +1,300 @@
+//! Carrying commands out: everything is checked before anything changes.
+
+use super::command::{Command, CommandError, Commands, INPUT_MAX, Reply};
+use crate::World;
+use crate::body::{Attractor, BodyData, BodyDef, BodyError, BodyKind};
+use crate::geom::Vec2;
+use crate::motion::{Push, acceleration};
+use crate::num::{
+    Acceleration, AngularImpulse, AngularVelocity, Damping, Decimal, Force, Impulse, Length, Mu, Quantity, RangeError,
+    Torque, Velocity, div, mul_div,
+};
+use crate::store::{Arena, AttractorId, BodyId};
+
+impl Commands for World {
+    fn apply(&mut self, command: Command) -> Result<Reply, CommandError> {
+        match command {
+            Command::CreateBody { def } => return self.add_body(&def).map(Reply::Body),
+            Command::DestroyBody { body } => self.remove_body(body)?,
+            Command::SetKind { body, kind } => self.change_kind(body, kind)?,
+            Command::SetPosition { body, position } => {
+                let slot = self.slot(body)?;
+                self.bodies.set_position(slot, position.checked()?);
+            }
+            Command::SetAngle { body, angle } => {
+                let slot = self.slot(body)?;
+                self.bodies.angle.set(slot, angle.checked()?);
+            }
+            Command::SetVelocity { body, velocity } => {
+                let slot = self.slot(body)?;
+                velocity.checked()?;
+                self.bodies.cold.value(slot).check(velocity, self.bodies.omega.get(slot))?;
+                self.bodies.set_velocity(slot, velocity);
+            }
+            Command::SetAngularVelocity { body, angular_velocity } => {
+                let slot = self.slot(body)?;
+                angular_velocity.checked()?;
+                self.bodies.cold.value(slot).check(self.bodies.velocity(slot), angular_velocity)?;
+                self.bodies.omega.set(slot, angular_velocity);
+            }
+            Command::SetForce { body, force } => self.change(body, |data| data.force = force)?,
+            Command::SetTorque { body, torque } => self.change(body, |data| data.torque = torque)?,
+            Command::SetMass { body, mass, inertia } => {
+                self.change(body, |data| (data.mass, data.inertia) = (mass, inertia))?;
+            }
+            Command::SetFixedRotation { body, fixed } => self.fix_rotation(body, fixed)?,
+            Command::SetDamping { body, linear, angular } => {
+                self.change(body, |data| (data.linear_damping, data.angular_damping) = (linear, angular))?;
+            }
+            Command::SetMu { body, mu } => {
+                self.change(body, |data| data.mu = mu)?;
+                self.rebuild();
+            }
+            Command::SetUserData { body, user_data } => self.change(body, |data| data.user_data = user_data)?,
+            Command::ApplyForce { body, force, point } => {
+                let slot = self.dynamic_slot(body, Force::NAME)?;
+                let force = force.checked()?;
+                let torque = match point {
+                    Some(point) if self.bodies.cold.value(slot).turns() => {
+                        self.moment::<Torque>(slot, point, force.x.to_bits(), force.y.to_bits())?
+                    }
+                    _ => 0,
+                };
+                self.push(slot, force, Torque::from_bits(torque))?;
+            }
+            Command::ApplyTorque { body, torque } => {
+                let slot = self.turning_slot(body, Torque::NAME)?;
+                self.push(slot, Vec2::default(), torque.checked()?)?;
+            }
+            Command::ApplyImpulse { body, impulse, point } => self.hit(body, impulse, point)?,
+            Command::ApplyAngularImpulse { body, impulse } => {
+                let slot = self.turning_slot(body, AngularImpulse::NAME)?;
+                let omega = self.spun(slot, impulse.checked()?.to_bits())?;
+                self.bodies.omega.set(slot, omega);
+            }
+            Command::CreateAttractor { attractor } => return self.add_attractor(attractor).map(Reply::Attractor),
+            Command::SetAttractor { id, attractor } => {
+                let slot = self.attractor_slot(id)?;
+                let attractor = attractor.checked()?;
+                self.attractors.update(slot, |a| *a = attractor);
+                self.rebuild();
+            }
+            Command::DestroyAttractor { id } => {
+                self.attractors.remove(id.index, id.generation).ok_or(CommandError::NoSuchAttractor(id))?;
+                self.rebuild();
+            }
+            Command::SetGravity { gravity } => {
+                self.config.gravity = gravity.checked()?;
+                self.rebuild();
+            }
+            Command::ClearStatus => self.status.clear(),
+            Command::Input { bytes } => {
+                if bytes.len() > INPUT_MAX {
+                    return Err(CommandError::InputTooLong { length: bytes.len() as u64 });
+                }
+            }
+        }
+        Ok(Reply::Done)
+    }
+}
+
+/// That a body's own force and torque do not ask for more than the format of acceleration.
+fn check_acceleration(data: &BodyData, push: Option<&Push>) -> Result<(), RangeError> {
+    let (_, limited) = acceleration(data, Vec2::default(), push);
+    if limited { Err(RangeError::new::<Acceleration>(Decimal { bits: i128::MAX, frac: 64 })) } else { Ok(()) }
+}
+
+/// A sum that must stay in its quantity's range.
+fn sum<Q: Quantity>(a: Q, b: Q, narrow: impl Fn(i128) -> Q) -> Result<Q, RangeError> {
+    let bits = a.wide_bits().saturating_add(b.wide_bits());
+    if bits < Q::MIN.wide_bits() || bits > Q::MAX.wide_bits() {
+        return Err(RangeError::new::<Q>(Decimal { bits, frac: Q::FRAC }));
+    }
+    Ok(narrow(bits))
+}
+
+impl World {
+    fn slot(&self, body: BodyId) -> Result<usize, CommandError> {
+        self.bodies.slot(body).ok_or(CommandError::NoSuchBody(body))
+    }
+
+    /// The slot of a body that `quantity` can act on.
+    fn dynamic_slot(&self, body: BodyId, quantity: &'static str) -> Result<usize, CommandError> {
+        let slot = self.slot(body)?;
+        let kind = self.bodies.cold.value(slot).kind;
+        if kind == BodyKind::Dynamic { Ok(slot) } else { Err(BodyError::Kind { quantity, kind }.into()) }
+    }
+
+    /// The slot of a body that `quantity` can turn.
+    fn turning_slot(&self, body: BodyId, quantity: &'static str) -> Result<usize, CommandError> {
+        let slot = self.dynamic_slot(body, quantity)?;
+        let fixed = self.bodies.cold.value(slot).fixed_rotation;
+        if fixed { Err(BodyError::FixedRotation { quantity }.into()) } else { Ok(slot) }
+    }
+
+    fn attractor_slot(&self, id: AttractorId) -> Result<usize, CommandError> {
+        self.attractors.slot(id.index, id.generation).ok_or(CommandError::NoSuchAttractor(id))
+    }
+
+    fn add_body(&mut self, def: &BodyDef) -> Result<BodyId, CommandError> {
+        def.check()?;
+        check_acceleration(&def.data(), None)?;
+        if !self.bodies.cold.has_room() {
+            return Err(CommandError::Full { what: "bodies", limit: Arena::<BodyData>::LIMIT });
+        }
+        let id = self.bodies.insert(def);
+        if def.mu == Mu::ZERO {
+            self.refresh(id.index as usize)
+        } else {
+            self.rebuild()
+        }
+        Ok(id)
+    }
+
+    fn remove_body(&mut self, body: BodyId) -> Result<(), CommandError> {
+        let slot = self.slot(body)?;
+        let pulls = self.bodies.cold.value(slot).mu != Mu::ZERO;
+        self.bodies.remove(body);
+        self.pushes.retain(|push| push.slot as usize != slot);
+        if pulls {
+            self.rebuild()
+        } else {
+            self.refresh(slot)
+        }
+        Ok(())
+    }
+
+    fn add_attractor(&mut self, attractor: Attractor) -> Result<AttractorId, CommandError> {
+        let attractor = attractor.checked()?;
+        if !self.attractors.has_room() {
+            return Err(CommandError::Full { what: "attractors", limit: Arena::<Attractor>::LIMIT });
+        }
+        let (index, generation) = self.attractors.insert(attractor);
+        self.rebuild();
+        Ok(AttractorId { index, generation })
+    }
+
+    /// Changes a body's cold data if it can be so.
+    fn change(&mut self, body: BodyId, change: impl FnOnce(&mut BodyData)) -> Result<(), CommandError> {
+        let slot = self.slot(body)?;
+        let mut data = self.bodies.cold.value(slot).clone();
+        change(&mut data);
+        data.check(self.bodies.velocity(slot), self.bodies.omega.get(slot))?;
+        check_acceleration(&data, None)?;
+        check_acceleration(&data, self.pushes.iter().find(|push| push.slot as usize == slot))?;
+        self.bodies.cold.update(slot, |row| *row = data);
+        self.refresh(slot);
+        Ok(())
+    }
+
+    fn change_kind(&mut self, body: BodyId, kind: BodyKind) -> Result<(), CommandError> {
+        let slot = self.slot(body)?;
+        if kind != BodyKind::Dynamic {
+            self.pushes.retain(|push| push.slot as usize != slot);
+        }
+        if kind == BodyKind::Static {
+            self.bodies.set_velocity(slot, Vec2::default());
+            self.bodies.omega.set(slot, AngularVelocity::ZERO);
+        }
+        self.bodies.cold.update(slot, |data| {
+            data.kind = kind;
+            if kind != BodyKind::Dynamic {
+                (data.force, data.torque) = (Vec2::default(), Torque::ZERO);
+                (data.linear_damping, data.angular_damping) = (Damping::ZERO, Damping::ZERO);
+            }
+        });
+        self.refresh(slot);
+        Ok(())
+    }
+
+    fn fix_rotation(&mut self, body: BodyId, fixed: bool) -> Result<(), CommandError> {
+        let slot = self.slot(body)?;
+        if fixed {
+            self.bodies.omega.set(slot, AngularVelocity::ZERO);
+            for push in self.pushes.iter_mut().filter(|push| push.slot as usize == slot) {
+                push.torque = Torque::ZERO;
+            }
+        }
+        self.bodies.cold.update(slot, |data| {
+            data.fixed_rotation = fixed;
+            if fixed {
+                data.torque = Torque::ZERO;
+            }
+        });
+        self.refresh(slot);
+        Ok(())
+    }
+
+    /// The moment r × F about the centre of mass of a force or impulse (x, y) at a point, 64 fraction bits (DD:torque).
+    fn moment<Q: Quantity>(&self, slot: usize, point: Vec2<Length>, x: i128, y: i128) -> Result<i128, RangeError> {
+        let point = point.checked()?;
+        let center = self.bodies.position(slot);
+        let arm = |p: Length, c: Length| i128::from(p.to_bits()).saturating_sub(c.to_bits().into());
+        let (rx, ry) = (arm(point.x, center.x), arm(point.y, center.y));
+        let bits = mul_div(rx, y, 1 << 32).saturating_sub(mul_div(ry, x, 1 << 32));
+        if bits < Q::MIN.wide_bits() || bits > Q::MAX.wide_bits() {
+            return Err(RangeError::new::<Q>(Decimal { bits, frac: 64 }));
+        }
+        Ok(bits)
+    }
+
+    /// Adds to the forces of this tick on a body.
+    fn push(&mut self, slot: usize, force: Vec2<Force>, torque: Torque) -> Result<(), CommandError> {
+        let at = self.pushes.partition_point(|push| (push.slot as usize) < slot);
+        let present = self.pushes.get(at).filter(|push| push.slot as usize == slot);
+        let mut push = match present {
+            Some(push) => push.clone(),
+            None => Push { slot: slot as u32, force: Vec2::default(), torque: Torque::ZERO },
+        };
+        let is_new = present.is_none();
+        push.force =
+            Vec2::new(sum(push.force.x, force.x, Force::from_bits)?, sum(push.force.y, force.y, Force::from_bits)?);
+        push.torque = sum(push.torque, torque, Torque::from_bits)?;
+        check_acceleration(self.bodies.cold.value(slot), Some(&push))?;
+        if is_new {
+            self.pushes.insert(at, push);
+        } else {
+            self.pushes[at] = push;
+        }
+        Ok(())
+    }
+
+    /// v += J/m, ω += (r × J)/I.
+    fn hit(&mut self, body: BodyId, impulse: Vec2<Impulse>, point: Option<Vec2<Length>>) -> Result<(), CommandError> {
+        let slot = self.dynamic_slot(body, Impulse::NAME)?;
+        let impulse = impulse.checked()?;
+        let data = self.bodies.cold.value(slot);
+        let velocity = self.bodies.velocity(slot);
+        // |J| ≤ 10¹⁴ N s is below 2¹¹¹ in bits; shifted to 48 + 32 fraction bits it fits.
+        let faster = |v: Velocity, j: Impulse| {
+            let change = div(j.to_bits().saturating_mul(1 << 16), data.mass.to_bits().into());
+            wide_sum::<Velocity>(v, change).map(|bits| Velocity::from_bits(bits as i64))
+        };
+        let velocity = Vec2::new(faster(velocity.x, impulse.x)?, faster(velocity.y, impulse.y)?);
+        let omega = match point {
+            Some(point) if data.turns() => {
+                let moment = self.moment::<AngularImpulse>(slot, point, impulse.x.to_bits(), impulse.y.to_bits())?;
+                self.spun(slot, moment)?
+            }
+            _ => self.bodies.omega.get(slot),
+        };
+        self.bodies.set_velocity(slot, velocity);
+        self.bodies.omega.set(slot, omega);
+        Ok(())
+    }
+
+    /// The angular velocity after an angular impulse of 64 fraction bits.
+    fn spun(&self, slot: usize, impulse: i128) -> Result<AngularVelocity, RangeError> {
+        let change = mul_div(impulse, 1 << 48, self.bodies.cold.value(slot).inertia.to_bits());
+        wide_sum::<AngularVelocity>(self.bodies.omega.get(slot), change).map(|b| AngularVelocity::from_bits(b as i64))
+    }
+}
+
+/// `value + change` in the quantity's bits, if it is in range.
+fn wide_sum<Q: Quantity>(value: Q, change: i128) -> Result<i128, RangeError> {
+    let bits = value.wide_bits().saturating_add(change);
+    if bits < Q::MIN.wide_bits() || bits > Q::MAX.wide_bits() {
+        return Err(RangeError::new::<Q>(Decimal { bits, frac: Q::FRAC }));
+    }
+    Ok(bits)
+}

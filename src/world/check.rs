@@ -1,0 +1,45 @@
+//! Every invariant of a world, in words and in code.
+
+use crate::World;
+use crate::motion::Drive;
+
+impl World {
+    /// Whether every invariant holds: free slots are empty and chained, columns are as long as their slots, values
+    /// are in range and fit their body's kind, forces of one tick are sorted and belong to dynamic bodies, and what
+    /// is derived is what deriving it again gives. O(n); for tests and for suspicion.
+    ///
+    /// Errors: the first broken invariant, in words.
+    pub fn check(&self) -> Result<(), String> {
+        let World { config, tick: _, bodies, attractors, pushes, status, drive, faults } = self;
+        let name = |what: &'static str| move |reason: &str| format!("the table of {what} {reason}");
+        config.check().map_err(|error| error.to_string())?;
+        bodies.check().map_err(name("bodies"))?;
+        attractors.check().map_err(name("attractors"))?;
+        status.check().map_err(name("status entries"))?;
+        if !faults.is_empty() {
+            return Err("faults of the last step were left over".into());
+        }
+        if !pushes.is_sorted_by(|a, b| a.slot < b.slot) {
+            return Err("the forces of this tick are not sorted by body".into());
+        }
+        for push in pushes {
+            let slot = push.slot as usize;
+            if bodies.id(slot).is_none() || !bodies.cold.value(slot).is_dynamic() {
+                return Err(format!("a force of this tick acts on slot {slot}, which holds no dynamic body"));
+            }
+        }
+        let mut fresh = Drive::default();
+        fresh.prepare(config.integrator, config.tick_rate, config.substeps, bodies, attractors);
+        for slot in 0..bodies.cold.len() {
+            fresh.set(slot, bodies.cold.value(slot), config.gravity, None);
+        }
+        // Where carried sources were at the last evaluation does not matter: each evaluation moves them first.
+        let mut present = drive.clone();
+        present.follow(bodies);
+        fresh.follow(bodies);
+        if fresh != present {
+            return Err("the prepared motion does not follow from the state".into());
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,425 @@
+//! Commands: every change of a world, as a value.
+
+use crate::body::{Attractor, BodyDef, BodyError, BodyKind};
+use crate::geom::Vec2;
+use crate::num::{
+    Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Force, Impulse, Inertia, Length, Mass, Mu, Torque,
+    Velocity,
+};
+use crate::store::{AttractorId, BodyId, DecodeError, Diff, Reader, Record, Sink, record_enum};
+use core::fmt;
+use serde::{Deserialize, Serialize};
+
+/// The most bytes of one [`Command::Input`].
+pub const INPUT_MAX: usize = 65_536;
+
+/// Every change of a world. The methods of [`Commands`] are sugar for these, so a recorder that records commands
+/// misses nothing. A refused command changes nothing.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+#[allow(clippy::large_enum_variant, reason = "commands are few and short-lived, a box would cost each creation")]
+pub enum Command {
+    /// Creates a body; the reply is its id.
+    CreateBody {
+        /// The body to create.
+        def: BodyDef,
+    },
+    /// Destroys a body and the forces of this tick on it.
+    DestroyBody {
+        /// Which.
+        body: BodyId,
+    },
+    /// Changes what moves a body. What the new kind does not have becomes zero: forces and damping of a body that is no
+    /// longer dynamic, and velocities of one that becomes static.
+    SetKind {
+        /// Which.
+        body: BodyId,
+        /// Its new kind.
+        kind: BodyKind,
+    },
+    /// Puts a body somewhere else.
+    SetPosition {
+        /// Which.
+        body: BodyId,
+        /// Where to.
+        position: Vec2<Length>,
+    },
+    /// Turns a body.
+    SetAngle {
+        /// Which.
+        body: BodyId,
+        /// Its new orientation, unwrapped.
+        angle: Angle,
+    },
+    /// Sets a body's velocity.
+    SetVelocity {
+        /// Which.
+        body: BodyId,
+        /// Of its centre of mass.
+        velocity: Vec2<Velocity>,
+    },
+    /// Sets a body's angular velocity.
+    SetAngularVelocity {
+        /// Which.
+        body: BodyId,
+        /// Counter-clockwise positive.
+        angular_velocity: AngularVelocity,
+    },
+    /// Sets the force that acts on a body each tick.
+    SetForce {
+        /// Which.
+        body: BodyId,
+        /// It acts at the centre of mass.
+        force: Vec2<Force>,
+    },
+    /// Sets the torque that acts on a body each tick.
+    SetTorque {
+        /// Which.
+        body: BodyId,
+        /// Counter-clockwise positive.
+        torque: Torque,
+    },
+    /// Sets a body's mass and moment of inertia.
+    SetMass {
+        /// Which.
+        body: BodyId,
+        /// Its new mass.
+        mass: Mass,
+        /// Its new moment of inertia about the centre of mass.
+        inertia: Inertia,
+    },
+    /// Lets a body turn under forces, or not. Fixing it stops it from turning.
+    SetFixedRotation {
+        /// Which.
+        body: BodyId,
+        /// Whether it is fixed.
+        fixed: bool,
+    },
+    /// Sets a body's damping.
+    SetDamping {
+        /// Which.
+        body: BodyId,
+        /// The rate at which its velocity decays.
+        linear: Damping,
+        /// The rate at which its angular velocity decays.
+        angular: Damping,
+    },
+    /// Sets by how much a body pulls the others.
+    SetMu {
+        /// Which.
+        body: BodyId,
+        /// Its gravitational parameter; 0 for none.
+        mu: Mu,
+    },
+    /// Sets a body's user data.
+    SetUserData {
+        /// Which.
+        body: BodyId,
+        /// The game's own.
+        user_data: u64,
+    },
+    /// Adds a force for the next tick. The lever is that of the moment of the call.
+    ApplyForce {
+        /// Which; it is dynamic.
+        body: BodyId,
+        /// The force.
+        force: Vec2<Force>,
+        /// Where in the world it acts; `None` is the centre of mass.
+        point: Option<Vec2<Length>>,
+    },
+    /// Adds a torque for the next tick.
+    ApplyTorque {
+        /// Which; it is dynamic and may turn.
+        body: BodyId,
+        /// The torque.
+        torque: Torque,
+    },
+    /// Changes a body's velocities by an impulse, at once (DD:impulseV).
+    ApplyImpulse {
+        /// Which; it is dynamic.
+        body: BodyId,
+        /// The impulse.
+        impulse: Vec2<Impulse>,
+        /// Where in the world it acts; `None` is the centre of mass.
+        point: Option<Vec2<Length>>,
+    },
+    /// Changes a body's angular velocity by an angular impulse, at once.
+    ApplyAngularImpulse {
+        /// Which; it is dynamic and may turn.
+        body: BodyId,
+        /// The angular impulse.
+        impulse: AngularImpulse,
+    },
+    /// Creates an attractor; the reply is its id.
+    CreateAttractor {
+        /// The attractor to create.
+        attractor: Attractor,
+    },
+    /// Changes an attractor.
+    SetAttractor {
+        /// Which.
+        id: AttractorId,
+        /// Its new place and strength.
+        attractor: Attractor,
+    },
+    /// Destroys an attractor.
+    DestroyAttractor {
+        /// Which.
+        id: AttractorId,
+    },
+    /// Changes gravity.
+    SetGravity {
+        /// The acceleration of every dynamic body.
+        gravity: Vec2<Acceleration>,
+    },
+    /// Forgets what went out of range.
+    ClearStatus,
+    /// Attaches the game's own bytes to this tick. The world does not look at them; replays carry them.
+    Input {
+        /// At most [`INPUT_MAX`] bytes.
+        bytes: Vec<u8>,
+    },
+}
+
+record_enum!(Command {
+    0 => CreateBody { def },
+    1 => DestroyBody { body },
+    2 => SetKind { body, kind },
+    3 => SetPosition { body, position },
+    4 => SetAngle { body, angle },
+    5 => SetVelocity { body, velocity },
+    6 => SetAngularVelocity { body, angular_velocity },
+    7 => SetForce { body, force },
+    8 => SetTorque { body, torque },
+    9 => SetMass { body, mass, inertia },
+    10 => SetFixedRotation { body, fixed },
+    11 => SetDamping { body, linear, angular },
+    12 => SetMu { body, mu },
+    13 => SetUserData { body, user_data },
+    14 => ApplyForce { body, force, point },
+    15 => ApplyTorque { body, torque },
+    16 => ApplyImpulse { body, impulse, point },
+    17 => ApplyAngularImpulse { body, impulse },
+    18 => CreateAttractor { attractor },
+    19 => SetAttractor { id, attractor },
+    20 => DestroyAttractor { id },
+    21 => SetGravity { gravity },
+    22 => ClearStatus {},
+    23 => Input { bytes },
+});
+
+impl<T: Record + PartialEq + fmt::Debug> Record for Option<T> {
+    fn save(&self, sink: &mut impl Sink) {
+        self.is_some().save(sink);
+        if let Some(value) = self {
+            value.save(sink);
+        }
+    }
+
+    fn load(reader: &mut Reader<'_>, field: &'static str) -> Result<Self, DecodeError> {
+        if bool::load(reader, field)? { T::load(reader, field).map(Some) } else { Ok(None) }
+    }
+
+    fn diff(&self, other: &Self, diff: &mut Diff) {
+        if self != other {
+            diff.note(format!("{self:?}"), format!("{other:?}"));
+        }
+    }
+}
+
+/// What an accepted command answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reply {
+    /// It is done.
+    Done,
+    /// The id of the new body.
+    Body(BodyId),
+    /// The id of the new attractor.
+    Attractor(AttractorId),
+}
+
+/// Why a command was refused. The world has not changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CommandError {
+    /// The body was destroyed, or never was.
+    NoSuchBody(BodyId),
+    /// The attractor was destroyed, or never was.
+    NoSuchAttractor(AttractorId),
+    /// The body cannot have this value.
+    Body(BodyError),
+    /// A table is full.
+    Full {
+        /// What there are too many of.
+        what: &'static str,
+        /// The most there can be.
+        limit: u32,
+    },
+    /// Input of more than [`INPUT_MAX`] bytes.
+    InputTooLong {
+        /// Its length in bytes.
+        length: u64,
+    },
+}
+
+impl fmt::Display for CommandError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            CommandError::NoSuchBody(id) => write!(f, "there is no {id}"),
+            CommandError::NoSuchAttractor(id) => write!(f, "there is no {id}"),
+            CommandError::Body(error) => error.fmt(f),
+            CommandError::Full { what, limit } => write!(f, "there are {limit} {what}, which is the most there can be"),
+            CommandError::InputTooLong { length } => write!(f, "input of {length} bytes is longer than {INPUT_MAX}"),
+        }
+    }
+}
+
+impl core::error::Error for CommandError {}
+
+impl<E: Into<BodyError>> From<E> for CommandError {
+    fn from(error: E) -> Self {
+        CommandError::Body(error.into())
+    }
+}
+
+/// The commands as methods, for whatever takes commands: a [`World`](crate::World), or a recorder around one.
+pub trait Commands {
+    /// Carries a command out, or refuses it and changes nothing.
+    fn apply(&mut self, command: Command) -> Result<Reply, CommandError>;
+
+    /// Creates a body.
+    fn create_body(&mut self, def: &BodyDef) -> Result<BodyId, CommandError> {
+        match self.apply(Command::CreateBody { def: def.clone() })? {
+            Reply::Body(id) => Ok(id),
+            reply => unreachable!("creating a body answers with its id, not {reply:?}"),
+        }
+    }
+
+    /// Creates an attractor.
+    fn create_attractor(&mut self, attractor: Attractor) -> Result<AttractorId, CommandError> {
+        match self.apply(Command::CreateAttractor { attractor })? {
+            Reply::Attractor(id) => Ok(id),
+            reply => unreachable!("creating an attractor answers with its id, not {reply:?}"),
+        }
+    }
+
+    /// Destroys a body and the forces of this tick on it.
+    fn destroy_body(&mut self, body: BodyId) -> Result<(), CommandError> {
+        self.apply(Command::DestroyBody { body }).map(drop)
+    }
+
+    /// Changes what moves a body. See [`Command::SetKind`].
+    fn set_kind(&mut self, body: BodyId, kind: BodyKind) -> Result<(), CommandError> {
+        self.apply(Command::SetKind { body, kind }).map(drop)
+    }
+
+    /// Puts a body somewhere else.
+    fn set_position(&mut self, body: BodyId, position: Vec2<Length>) -> Result<(), CommandError> {
+        self.apply(Command::SetPosition { body, position }).map(drop)
+    }
+
+    /// Turns a body.
+    fn set_angle(&mut self, body: BodyId, angle: Angle) -> Result<(), CommandError> {
+        self.apply(Command::SetAngle { body, angle }).map(drop)
+    }
+
+    /// Sets a body's velocity.
+    fn set_velocity(&mut self, body: BodyId, velocity: Vec2<Velocity>) -> Result<(), CommandError> {
+        self.apply(Command::SetVelocity { body, velocity }).map(drop)
+    }
+
+    /// Sets a body's angular velocity.
+    fn set_angular_velocity(&mut self, body: BodyId, angular_velocity: AngularVelocity) -> Result<(), CommandError> {
+        self.apply(Command::SetAngularVelocity { body, angular_velocity }).map(drop)
+    }
+
+    /// Sets the force that acts on a body each tick.
+    fn set_force(&mut self, body: BodyId, force: Vec2<Force>) -> Result<(), CommandError> {
+        self.apply(Command::SetForce { body, force }).map(drop)
+    }
+
+    /// Sets the torque that acts on a body each tick.
+    fn set_torque(&mut self, body: BodyId, torque: Torque) -> Result<(), CommandError> {
+        self.apply(Command::SetTorque { body, torque }).map(drop)
+    }
+
+    /// Sets a body's mass and moment of inertia.
+    fn set_mass(&mut self, body: BodyId, mass: Mass, inertia: Inertia) -> Result<(), CommandError> {
+        self.apply(Command::SetMass { body, mass, inertia }).map(drop)
+    }
+
+    /// Lets a body turn under forces, or not. Fixing it stops it from turning.
+    fn set_fixed_rotation(&mut self, body: BodyId, fixed: bool) -> Result<(), CommandError> {
+        self.apply(Command::SetFixedRotation { body, fixed }).map(drop)
+    }
+
+    /// Sets a body's damping.
+    fn set_damping(&mut self, body: BodyId, linear: Damping, angular: Damping) -> Result<(), CommandError> {
+        self.apply(Command::SetDamping { body, linear, angular }).map(drop)
+    }
+
+    /// Sets by how much a body pulls the others.
+    fn set_mu(&mut self, body: BodyId, mu: Mu) -> Result<(), CommandError> {
+        self.apply(Command::SetMu { body, mu }).map(drop)
+    }
+
+    /// Sets a body's user data.
+    fn set_user_data(&mut self, body: BodyId, user_data: u64) -> Result<(), CommandError> {
+        self.apply(Command::SetUserData { body, user_data }).map(drop)
+    }
+
+    /// Adds a force for the next tick. The lever is that of the moment of the call.
+    fn apply_force(
+        &mut self,
+        body: BodyId,
+        force: Vec2<Force>,
+        point: Option<Vec2<Length>>,
+    ) -> Result<(), CommandError> {
+        self.apply(Command::ApplyForce { body, force, point }).map(drop)
+    }
+
+    /// Adds a torque for the next tick.
+    fn apply_torque(&mut self, body: BodyId, torque: Torque) -> Result<(), CommandError> {
+        self.apply(Command::ApplyTorque { body, torque }).map(drop)
+    }
+
+    /// Changes a body's velocities by an impulse, at once (DD:impulseV).
+    fn apply_impulse(
+        &mut self,
+        body: BodyId,
+        impulse: Vec2<Impulse>,
+        point: Option<Vec2<Length>>,
+    ) -> Result<(), CommandError> {
+        self.apply(Command::ApplyImpulse { body, impulse, point }).map(drop)
+    }
+
+    /// Changes a body's angular velocity by an angular impulse, at once.
+    fn apply_angular_impulse(&mut self, body: BodyId, impulse: AngularImpulse) -> Result<(), CommandError> {
+        self.apply(Command::ApplyAngularImpulse { body, impulse }).map(drop)
+    }
+
+    /// Changes an attractor.
+    fn set_attractor(&mut self, id: AttractorId, attractor: Attractor) -> Result<(), CommandError> {
+        self.apply(Command::SetAttractor { id, attractor }).map(drop)
+    }
+
+    /// Destroys an attractor.
+    fn destroy_attractor(&mut self, id: AttractorId) -> Result<(), CommandError> {
+        self.apply(Command::DestroyAttractor { id }).map(drop)
+    }
+
+    /// Changes gravity.
+    fn set_gravity(&mut self, gravity: Vec2<Acceleration>) -> Result<(), CommandError> {
+        self.apply(Command::SetGravity { gravity }).map(drop)
+    }
+
+    /// Forgets what went out of range.
+    fn clear_status(&mut self) -> Result<(), CommandError> {
+        self.apply(Command::ClearStatus).map(drop)
+    }
+
+    /// Attaches the game's own bytes to this tick. The world does not look at them; replays carry them.
+    fn input(&mut self, bytes: Vec<u8>) -> Result<(), CommandError> {
+        self.apply(Command::Input { bytes }).map(drop)
+    }
+}

@@ -1,0 +1,79 @@
+//! A world's constants.
+
+use crate::geom::Vec2;
+pub use crate::motion::Integrator;
+use crate::num::{Acceleration, RangeError};
+use crate::store::record;
+use core::fmt;
+use serde::{Deserialize, Serialize};
+
+/// A world to create. `WorldDef::default()` has 60 ticks per second, 4 substeps and no gravity.
+#[derive(Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WorldDef {
+    /// Ticks per second, 15 … 1000. A constant of the world, and part of its hash.
+    pub tick_rate: u32,
+    /// Substeps per tick, 1 … 64, of motion that is not exact in one step.
+    pub substeps: u32,
+    /// The acceleration of every dynamic body.
+    pub gravity: Vec2<Acceleration>,
+    /// How motion is integrated.
+    pub integrator: Integrator,
+}
+
+record!(WorldDef { tick_rate, substeps, gravity, integrator });
+
+impl Default for WorldDef {
+    fn default() -> Self {
+        WorldDef { tick_rate: 60, substeps: 4, gravity: Vec2::default(), integrator: Integrator::Verlet }
+    }
+}
+
+/// Why a world cannot be like this.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ConfigError {
+    /// Ticks per second outside 15 … 1000.
+    TickRate {
+        /// What was given.
+        value: u32,
+    },
+    /// Substeps outside 1 … 64.
+    Substeps {
+        /// What was given.
+        value: u32,
+    },
+    /// A gravity component outside its range.
+    Range(RangeError),
+}
+
+impl fmt::Display for ConfigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ConfigError::TickRate { value } => write!(f, "tick_rate {value} 1/s is outside 15 … 1000 1/s"),
+            ConfigError::Substeps { value } => write!(f, "substeps {value} is outside 1 … 64"),
+            ConfigError::Range(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for ConfigError {}
+
+impl From<RangeError> for ConfigError {
+    fn from(error: RangeError) -> Self {
+        ConfigError::Range(error)
+    }
+}
+
+impl WorldDef {
+    /// Whether a world can be like this.
+    pub fn check(&self) -> Result<(), ConfigError> {
+        if !(15..=1000).contains(&self.tick_rate) {
+            return Err(ConfigError::TickRate { value: self.tick_rate });
+        }
+        if !(1..=64).contains(&self.substeps) {
+            return Err(ConfigError::Substeps { value: self.substeps });
+        }
+        self.gravity.checked()?;
+        Ok(())
+    }
+}
