@@ -2,13 +2,13 @@
 
 use crate::geom::Vec2;
 use crate::num::{Length, Mu, Quantity, RangeError};
-use crate::store::{Row, record};
+use crate::store::{Row, record_copy};
 use serde::{Deserialize, Serialize};
 
 /// A fixed point that pulls every dynamic body by μ/d² (TM:UniversalGravLaw).
 ///
 /// A body exactly at the point is not pulled. A pull beyond 32 768 m/s² saturates and is noted in the world's status.
-#[derive(Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Attractor {
     /// Where it is.
@@ -17,7 +17,7 @@ pub struct Attractor {
     pub mu: Mu,
 }
 
-record!(Attractor { position, mu });
+record_copy!(Attractor { position, mu });
 
 impl Row for Attractor {}
 

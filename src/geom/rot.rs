@@ -28,11 +28,11 @@ impl Rot {
     /// A vector turned by this rotation. Rounding: once per component. Overflow: saturates.
     pub const fn rotate(self, v: Vec2<Length>) -> Vec2<Length> {
         let (v, cos, sin) = ([v.x.to_bits(), v.y.to_bits()], self.cos as i64, self.sin as i64);
-        Vec2::new(Length::from_bits(dot(v, [cos, -sin], 30)), Length::from_bits(dot(v, [sin, cos], 30)))
+        Vec2::new(Length::from_bits(dot(v, [cos, sin.saturating_neg()], 30)), Length::from_bits(dot(v, [sin, cos], 30)))
     }
 
     /// A vector turned back by this rotation. Rounding: once per component. Overflow: saturates.
     pub const fn unrotate(self, v: Vec2<Length>) -> Vec2<Length> {
-        Rot { cos: self.cos, sin: -self.sin }.rotate(v)
+        Rot { cos: self.cos, sin: self.sin.saturating_neg() }.rotate(v)
     }
 }

@@ -84,11 +84,12 @@ fn attraction(source: &Source, dx: i64, dy: i64) -> [i128; 2] {
     let even = distance2.leading_zeros() & !1;
     let root = (distance2 << even).isqrt() as u64;
     // 1/d as inverse·2^−127; a root of exactly 2⁶³ would give 2⁶⁴, one unit too many.
-    let inverse = (((1u128 << 127) - 1) / u128::from(root.max(1))) as u64;
+    let inverse = (u128::MAX >> 1).checked_div(root.into()).unwrap_or(0) as u64;
     let cube = mul_high(mul_high(inverse, inverse), inverse);
     let factor = mul_high(cube, source.mantissa);
     // With d, 1/d and μ as above, a·2⁴⁸ = d·factor·2^(3·even/2 − zeros − 69).
-    let exponent = (3 * (even / 2)) as i32 - source.zeros as i32 - 69;
+    let halves = (even as i32).saturating_mul(3) >> 1;
+    let exponent = halves.saturating_sub(source.zeros as i32).saturating_sub(69);
     [dx, dy].map(|d| scale(i128::from(d), factor, exponent))
 }
 
@@ -102,7 +103,7 @@ fn scale(d: i128, factor: u64, exponent: i32) -> i128 {
     }
     let exponent = exponent.unsigned_abs();
     if product.unsigned_abs().leading_zeros() <= exponent.saturating_add(1) {
-        return if product == 0 { 0 } else { PULL_MAX * product.signum() };
+        return if product == 0 { 0 } else { PULL_MAX.saturating_mul(product.signum()) };
     }
     (product << exponent).clamp(-PULL_MAX, PULL_MAX)
 }

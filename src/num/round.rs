@@ -116,12 +116,11 @@ pub const fn cross(a: [i64; 2], b: [i64; 2], shift: u32) -> i64 {
 pub const fn div(n: i128, d: i128) -> i128 {
     let (un, ud) = (n.unsigned_abs(), d.unsigned_abs());
     let negative = (n < 0) != (d < 0);
-    let magnitude = if ud == 0 {
-        if un == 0 { 0 } else { u128::MAX }
-    } else {
-        let (q, r) = (un / ud, un % ud);
+    let magnitude = match (un.checked_div(ud), un.checked_rem(ud)) {
         // r ≥ d − r is 2r ≥ d without the doubling that could overflow.
-        q + (r >= ud - r) as u128
+        (Some(q), Some(r)) => q + (r >= ud - r) as u128,
+        _ if un == 0 => 0,
+        _ => u128::MAX,
     };
     signed(negative, magnitude)
 }

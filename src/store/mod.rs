@@ -11,4 +11,4 @@ pub use codec::DecodeError;
 pub(crate) use codec::{Hasher, Reader, Sink, put};
 pub(crate) use column::Column;
 pub use record::Difference;
-pub(crate) use record::{Diff, Record, clone_fields, record, record_enum};
+pub(crate) use record::{Diff, Record, clone_fields, record, record_copy, record_enum};

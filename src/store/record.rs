@@ -169,8 +169,8 @@ impl<T: Record> Record for Vec<T> {
     }
 }
 
-/// Implements [`Record`] and a `Clone` whose `clone_from` reuses allocations, from one list of fields.
-macro_rules! record {
+/// [`record!`] for a type that is `Copy`, or needs no `Clone`.
+macro_rules! record_copy {
     ($type:ident { $($field:ident),* $(,)? } $(derived { $($derived:ident),* $(,)? })?) => {
         impl $crate::store::Record for $type {
             fn save(&self, sink: &mut impl $crate::store::Sink) {
@@ -192,7 +192,13 @@ macro_rules! record {
                 $( diff.field(stringify!($field), |d| $crate::store::Record::diff(&self.$field, &other.$field, d)); )*
             }
         }
+    };
+}
 
+/// Implements [`Record`] and a `Clone` whose `clone_from` reuses allocations, from one list of fields.
+macro_rules! record {
+    ($type:ident { $($field:ident),* $(,)? } $(derived { $($derived:ident),* $(,)? })?) => {
+        $crate::store::record_copy!($type { $($field),* } $(derived { $($derived),* })?);
         $crate::store::clone_fields!($type { $($field,)* $($($derived,)*)? });
     };
 }
@@ -250,4 +256,4 @@ macro_rules! record_enum {
     };
 }
 
-pub(crate) use {clone_fields, record, record_enum};
+pub(crate) use {clone_fields, record, record_copy, record_enum};

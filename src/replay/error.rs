@@ -1,0 +1,114 @@
+//! What can be wrong with a replay, by place.
+
+use crate::store::DecodeError;
+use crate::world::CommandError;
+use core::fmt;
+
+/// Why a replay does not play.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum ReplayError {
+    /// The bytes could not be read.
+    Io(std::io::Error),
+    /// The first bytes are not those of a replay.
+    NotAReplay,
+    /// A replay of another format version.
+    Version {
+        /// The version found.
+        found: u32,
+        /// The version this build reads.
+        known: u32,
+    },
+    /// A replay under another arithmetic law: it would play differently here.
+    Law {
+        /// The law found.
+        found: u32,
+        /// The law this build computes by.
+        known: u32,
+    },
+    /// The file was changed: a check or a digest does not fit, or a record is where none can be.
+    Corrupt {
+        /// Where the record begins.
+        offset: u64,
+        /// What is wrong.
+        reason: &'static str,
+    },
+    /// A record that this build does not know and must not skip.
+    UnknownRecord {
+        /// Where it begins.
+        offset: u64,
+        /// Its tag.
+        tag: u8,
+    },
+    /// The initial world or a command cannot be read.
+    Decode {
+        /// Where the record begins; the error's own offset is inside its payload.
+        offset: u64,
+        /// What is wrong in it.
+        error: DecodeError,
+    },
+    /// The file ends without its end record.
+    Truncated {
+        /// The whole ticks before the cut, all of which played.
+        ticks: u64,
+        /// Where the bytes end.
+        offset: u64,
+    },
+    /// Bytes after the end record.
+    Trailing {
+        /// Where they begin.
+        offset: u64,
+    },
+    /// A recorded command is refused, which it was not when it was recorded.
+    Refused {
+        /// The tick before which it stands.
+        tick: u64,
+        /// Which of that tick's commands, from 0.
+        index: u64,
+        /// Why.
+        error: CommandError,
+    },
+    /// The world's hash after a tick is not the recorded one.
+    Diverged {
+        /// The tick, counted from the start of the recording; 0 is the initial world.
+        tick: u64,
+        /// The recorded hash.
+        recorded: u64,
+        /// The hash of the world as played.
+        computed: u64,
+    },
+}
+
+impl fmt::Display for ReplayError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ReplayError::Io(error) => write!(f, "cannot be read: {error}"),
+            ReplayError::NotAReplay => f.write_str("not a tamias2d replay"),
+            ReplayError::Version { found, known } => {
+                write!(f, "replay of format version {found}, this build reads version {known}")
+            }
+            ReplayError::Law { found, known } => {
+                write!(f, "replay under arithmetic law {found}, this build computes by law {known}")
+            }
+            ReplayError::Corrupt { offset, reason } => write!(f, "replay corrupt at byte {offset}: {reason}"),
+            ReplayError::UnknownRecord { offset, tag } => {
+                write!(f, "replay has a record of unknown kind {tag:#04x} at byte {offset}")
+            }
+            ReplayError::Decode { offset, error } => {
+                write!(f, "replay corrupt in the record at byte {offset}: {error}")
+            }
+            ReplayError::Truncated { ticks, offset } => {
+                write!(f, "replay truncated at byte {offset}, after {ticks} whole ticks, which played well")
+            }
+            ReplayError::Trailing { offset } => write!(f, "unexpected bytes after the replay's end at byte {offset}"),
+            ReplayError::Refused { tick, index, error } => {
+                write!(f, "replay diverged before tick {tick}: command {index} is refused, {error}")
+            }
+            ReplayError::Diverged { tick, recorded, computed } => {
+                write!(f, "replay diverged at tick {tick}: hash {computed:016x}, recorded {recorded:016x}")
+            }
+        }
+    }
+}
+
+impl core::error::Error for ReplayError {}
