@@ -28,6 +28,8 @@ pub enum ReplayError {
     },
     /// The file was changed: a check or a digest does not fit, or a record is where none can be.
     Corrupt {
+        /// The tick being read, counted from the start of the recording; 0 is the header and the initial world.
+        tick: u64,
         /// Where the record begins.
         offset: u64,
         /// What is wrong.
@@ -35,6 +37,8 @@ pub enum ReplayError {
     },
     /// A record that this build does not know and must not skip.
     UnknownRecord {
+        /// The tick being read.
+        tick: u64,
         /// Where it begins.
         offset: u64,
         /// Its tag.
@@ -42,6 +46,8 @@ pub enum ReplayError {
     },
     /// The initial world or a command cannot be read.
     Decode {
+        /// The tick being read.
+        tick: u64,
         /// Where the record begins; the error's own offset is inside its payload.
         offset: u64,
         /// What is wrong in it.
@@ -79,6 +85,20 @@ pub enum ReplayError {
     },
 }
 
+impl ReplayError {
+    /// The same error, found while reading a tick.
+    pub(super) fn at(mut self, now: u64) -> Self {
+        if let ReplayError::Corrupt { tick, .. }
+        | ReplayError::UnknownRecord { tick, .. }
+        | ReplayError::Decode { tick, .. }
+        | ReplayError::Truncated { ticks: tick, .. } = &mut self
+        {
+            *tick = now;
+        }
+        self
+    }
+}
+
 impl fmt::Display for ReplayError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -90,12 +110,14 @@ impl fmt::Display for ReplayError {
             ReplayError::Law { found, known } => {
                 write!(f, "replay under arithmetic law {found}, this build computes by law {known}")
             }
-            ReplayError::Corrupt { offset, reason } => write!(f, "replay corrupt at byte {offset}: {reason}"),
-            ReplayError::UnknownRecord { offset, tag } => {
-                write!(f, "replay has a record of unknown kind {tag:#04x} at byte {offset}")
+            ReplayError::Corrupt { tick, offset, reason } => {
+                write!(f, "replay corrupt at tick {tick}, byte {offset}: {reason}")
             }
-            ReplayError::Decode { offset, error } => {
-                write!(f, "replay corrupt in the record at byte {offset}: {error}")
+            ReplayError::UnknownRecord { tick, offset, tag } => {
+                write!(f, "replay has a record of unknown kind {tag:#04x} at tick {tick}, byte {offset}")
+            }
+            ReplayError::Decode { tick, offset, error } => {
+                write!(f, "replay corrupt at tick {tick}, in the record at byte {offset}: {error}")
             }
             ReplayError::Truncated { ticks, offset } => {
                 write!(f, "replay truncated at byte {offset}, after {ticks} whole ticks, which played well")

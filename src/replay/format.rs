@@ -133,7 +133,8 @@ impl<R: Read> RecordReader<R> {
             return Err(ReplayError::Truncated { ticks: 0, offset: reader.offset });
         }
         let mut fields = Reader::new(&bytes[MAGIC.len()..]);
-        let mut field = || fields.take::<u32>("header").map_err(|error| ReplayError::Decode { offset: 0, error });
+        let mut field =
+            || fields.take::<u32>("header").map_err(|error| ReplayError::Decode { tick: 0, offset: 0, error });
         let (version, law, tick_rate) = (field()?, field()?, field()?);
         if version != REPLAY_VERSION {
             return Err(ReplayError::Version { found: version, known: REPLAY_VERSION });
@@ -142,7 +143,7 @@ impl<R: Read> RecordReader<R> {
             return Err(ReplayError::Law { found: law, known: LAW });
         }
         if *bytes != header(tick_rate) {
-            return Err(ReplayError::Corrupt { offset: 0, reason: "the header's hash does not fit it" });
+            return Err(ReplayError::Corrupt { tick: 0, offset: 0, reason: "the header's hash does not fit it" });
         }
         (reader.tick_rate, reader.chain) = (tick_rate, seed(bytes));
         reader.take_in();
@@ -217,7 +218,7 @@ impl<R: Read> RecordReader<R> {
         let (body, _) = self.bytes.split_at(self.payload.end);
         self.chain = XxHash3_64::oneshot_with_seed(self.chain, body);
         if self.last_u32() != self.chain as u32 {
-            return Err(ReplayError::Corrupt { offset, reason: "the record's check does not fit it" });
+            return Err(ReplayError::Corrupt { tick: 0, offset, reason: "the record's check does not fit it" });
         }
         Ok(Found::Record { tag, offset })
     }
@@ -239,7 +240,7 @@ impl<R: Read> RecordReader<R> {
             return Ok(Found::Cut);
         }
         if self.last_u64() != self.chain {
-            return Err(ReplayError::Corrupt { offset, reason: "the end's chain is not that of the records" });
+            return Err(ReplayError::Corrupt { tick: 0, offset, reason: "the end's chain is not that of the records" });
         }
         self.take_in();
         let digest = self.digest.finish();
@@ -247,7 +248,7 @@ impl<R: Read> RecordReader<R> {
             return Ok(Found::Cut);
         }
         if self.last_u64() != digest {
-            return Err(ReplayError::Corrupt { offset, reason: "the digest does not fit the file" });
+            return Err(ReplayError::Corrupt { tick: 0, offset, reason: "the digest does not fit the file" });
         }
         let end = self.offset;
         if self.fetch(1)? {

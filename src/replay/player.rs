@@ -7,15 +7,22 @@ use crate::store::{Reader, Record};
 use crate::world::{Command, Commands};
 use std::io::Read;
 
-/// What a verified replay amounts to.
+/// What a replay amounts to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Summary {
-    /// The ticks played, each with the recorded hash.
+    /// The ticks.
     pub ticks: u64,
-    /// The commands carried out.
+    /// The commands.
     pub commands: u64,
     /// The hash of the last state.
     pub hash: u64,
+}
+
+/// A tick as recorded, or the commands after the last one.
+struct Recorded {
+    offset: u64,
+    is_tick: bool,
+    hash: u64,
 }
 
 /// Plays a replay tick by tick, and compares the hash of the complete state after each.
@@ -26,6 +33,7 @@ pub struct Player<R> {
     commands: u64,
     /// The commands of the tick played last.
     last: Vec<Command>,
+    had_tail: bool,
     finished: bool,
 }
 
@@ -35,31 +43,27 @@ impl<R: Read> Player<R> {
     /// `input` is read in small pieces: give it a `BufReader` or a slice. Errors: the header or the initial world.
     pub fn new(input: R) -> Result<Self, ReplayError> {
         let mut records = RecordReader::new(input)?;
-        loop {
-            let (tag, offset) = match records.next()? {
-                Found::Record { tag, offset } => (tag, offset),
+        let offset = loop {
+            match records.next()? {
+                Found::Record { tag: tag::WORLD, offset } => break offset,
+                Found::Record { tag: tag::ANCILLARY.., .. } => {}
+                Found::Record { tag: tag::IDLE | tag::TICK | tag::TAIL, offset } => {
+                    return Err(ReplayError::Corrupt { tick: 0, offset, reason: "there is a tick before the world" });
+                }
+                Found::Record { tag, offset } => return Err(ReplayError::UnknownRecord { tick: 0, offset, tag }),
                 Found::Cut => return Err(ReplayError::Truncated { ticks: 0, offset: records.offset() }),
                 Found::End { .. } => {
-                    return Err(ReplayError::Corrupt { offset: records.offset(), reason: "there is no world" });
+                    let offset = records.offset();
+                    return Err(ReplayError::Corrupt { tick: 0, offset, reason: "there is no world" });
                 }
-            };
-            match tag {
-                tag::WORLD => {
-                    let world =
-                        World::load(records.payload()).map_err(|error| ReplayError::Decode { offset, error })?;
-                    if world.config().tick_rate != records.tick_rate {
-                        return Err(ReplayError::Corrupt { offset, reason: "its tick rate is not the header's" });
-                    }
-                    let last = Vec::new();
-                    return Ok(Player { records, world, ticks: 0, commands: 0, last, finished: false });
-                }
-                tag::ANCILLARY.. => {}
-                tag::IDLE | tag::TICK | tag::TAIL => {
-                    return Err(ReplayError::Corrupt { offset, reason: "there is a tick before the world" });
-                }
-                _ => return Err(ReplayError::UnknownRecord { offset, tag }),
             }
+        };
+        let world = World::load(records.payload()).map_err(|error| ReplayError::Decode { tick: 0, offset, error })?;
+        if world.config().tick_rate != records.tick_rate {
+            return Err(ReplayError::Corrupt { tick: 0, offset, reason: "its tick rate is not the header's" });
         }
+        let last = Vec::new();
+        Ok(Player { records, world, ticks: 0, commands: 0, last, had_tail: false, finished: false })
     }
 
     /// The world as played so far.
@@ -77,78 +81,88 @@ impl<R: Read> Player<R> {
     /// Errors: the first divergence, or what is wrong with the file, by place. A file cut off gives
     /// [`ReplayError::Truncated`] after its last whole tick.
     pub fn step(&mut self) -> Result<Option<u64>, ReplayError> {
-        let mut tail = false;
-        while !self.finished {
-            let (tag, offset) = match self.records.next()? {
-                Found::Record { tag, offset } => (tag, offset),
-                Found::Cut => {
-                    return Err(ReplayError::Truncated { ticks: self.ticks, offset: self.records.offset() });
-                }
-                Found::End { ticks } if ticks != self.ticks => {
-                    let offset = self.records.offset();
-                    return Err(ReplayError::Corrupt { offset, reason: "the end counts other ticks" });
-                }
-                Found::End { .. } => {
-                    self.finished = true;
-                    break;
-                }
-            };
-            match tag {
-                tag::IDLE | tag::TICK | tag::TAIL if tail => {
-                    return Err(ReplayError::Corrupt { offset, reason: "there is a tick after the tail" });
-                }
-                tag::IDLE | tag::TICK => {
-                    let recorded = self.carry_out(offset)?;
-                    self.world.step();
-                    self.ticks = self.ticks.saturating_add(1);
-                    return self.compare(recorded).map(Some);
-                }
-                tag::TAIL => {
-                    let recorded = self.carry_out(offset)?;
-                    self.compare(recorded)?;
-                    tail = true;
-                }
-                tag::ANCILLARY.. => {}
-                tag::WORLD => return Err(ReplayError::Corrupt { offset, reason: "there is a second world" }),
-                _ => return Err(ReplayError::UnknownRecord { offset, tag }),
+        while let Some(recorded) = self.read()? {
+            for (index, command) in self.last.iter().enumerate() {
+                let tick = self.ticks.saturating_add(1);
+                let refused = |error| ReplayError::Refused { tick, index: index as u64, error };
+                self.world.apply(command.clone()).map_err(refused)?;
+            }
+            if recorded.is_tick {
+                self.world.step();
+                self.ticks = self.ticks.saturating_add(1);
+            }
+            let computed = self.world.hash();
+            if computed != recorded.hash {
+                return Err(ReplayError::Diverged { tick: self.ticks, recorded: recorded.hash, computed });
+            }
+            if recorded.is_tick {
+                return Ok(Some(computed));
             }
         }
         Ok(None)
-    }
-
-    /// Carries out the commands of the present record and returns the hash it expects afterwards.
-    fn carry_out(&mut self, offset: u64) -> Result<u64, ReplayError> {
-        let decode = |error| ReplayError::Decode { offset, error };
-        self.last.clear();
-        let mut reader = Reader::new(self.records.payload());
-        let recorded = reader.take("hash").map_err(decode)?;
-        while reader.remaining() > 0 {
-            self.last.push(Command::load(&mut reader, "command").map_err(decode)?);
-        }
-        for (index, command) in self.last.iter().enumerate() {
-            let tick = self.ticks.saturating_add(1);
-            self.world.apply(command.clone()).map_err(|error| ReplayError::Refused {
-                tick,
-                index: index as u64,
-                error,
-            })?;
-            self.commands = self.commands.saturating_add(1);
-        }
-        Ok(recorded)
-    }
-
-    fn compare(&self, recorded: u64) -> Result<u64, ReplayError> {
-        let computed = self.world.hash();
-        if computed == recorded {
-            Ok(computed)
-        } else {
-            Err(ReplayError::Diverged { tick: self.ticks, recorded, computed })
-        }
     }
 
     /// Plays the rest.
     pub fn verify(mut self) -> Result<Summary, ReplayError> {
         while self.step()?.is_some() {}
         Ok(Summary { ticks: self.ticks, commands: self.commands, hash: self.world.hash() })
+    }
+
+    /// Reads the rest without playing it: whether the file is whole, and what it amounts to. The hash is the last
+    /// recorded one.
+    pub fn inspect(mut self) -> Result<Summary, ReplayError> {
+        let mut hash = self.world.hash();
+        while let Some(recorded) = self.read()? {
+            hash = recorded.hash;
+            self.ticks = self.ticks.saturating_add(u64::from(recorded.is_tick));
+        }
+        Ok(Summary { ticks: self.ticks, commands: self.commands, hash })
+    }
+
+    /// Reads the next tick or tail and its commands; `None` at the end.
+    fn read(&mut self) -> Result<Option<Recorded>, ReplayError> {
+        let recorded = self.read_record().map_err(|error| match error {
+            // What a file that was cut off holds is whole ticks; everything else is wrong in the tick being read.
+            ReplayError::Truncated { .. } => error.at(self.ticks),
+            error => error.at(self.ticks.saturating_add(1)),
+        })?;
+        self.last.clear();
+        let Some(recorded) = recorded else { return Ok(None) };
+        let tick = self.ticks.saturating_add(1);
+        let decode = |error| ReplayError::Decode { tick, offset: recorded.offset, error };
+        let mut reader = Reader::new(self.records.payload());
+        let hash = reader.take("hash").map_err(decode)?;
+        while reader.remaining() > 0 {
+            self.last.push(Command::load(&mut reader, "command").map_err(decode)?);
+        }
+        self.commands = self.commands.saturating_add(self.last.len() as u64);
+        Ok(Some(Recorded { hash, ..recorded }))
+    }
+
+    fn read_record(&mut self) -> Result<Option<Recorded>, ReplayError> {
+        let corrupt = |offset, reason| Err(ReplayError::Corrupt { tick: 0, offset, reason });
+        while !self.finished {
+            match self.records.next()? {
+                Found::Record { tag: tag::IDLE | tag::TICK | tag::TAIL, offset } if self.had_tail => {
+                    return corrupt(offset, "there is a tick after the tail");
+                }
+                Found::Record { tag: tag::IDLE | tag::TICK, offset } => {
+                    return Ok(Some(Recorded { offset, is_tick: true, hash: 0 }));
+                }
+                Found::Record { tag: tag::TAIL, offset } => {
+                    self.had_tail = true;
+                    return Ok(Some(Recorded { offset, is_tick: false, hash: 0 }));
+                }
+                Found::Record { tag: tag::ANCILLARY.., .. } => {}
+                Found::Record { tag: tag::WORLD, offset } => return corrupt(offset, "there is a second world"),
+                Found::Record { tag, offset } => return Err(ReplayError::UnknownRecord { tick: 0, offset, tag }),
+                Found::Cut => return Err(ReplayError::Truncated { ticks: 0, offset: self.records.offset() }),
+                Found::End { ticks } if ticks != self.ticks => {
+                    return corrupt(self.records.offset(), "the end counts other ticks");
+                }
+                Found::End { .. } => self.finished = true,
+            }
+        }
+        Ok(None)
     }
 }

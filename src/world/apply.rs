@@ -1,6 +1,7 @@
 //! Carrying commands out: everything is checked before anything changes.
 
-use super::command::{Command, CommandError, Commands, INPUT_MAX, Reply};
+use super::command::{Command, CommandError, INPUT_MAX, Reply};
+use super::commands::Commands;
 use crate::World;
 use crate::body::{Attractor, BodyData, BodyDef, BodyError, BodyKind};
 use crate::geom::Vec2;

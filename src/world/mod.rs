@@ -4,6 +4,7 @@ mod apply;
 mod body;
 mod check;
 mod command;
+mod commands;
 mod config;
 mod status;
 mod step;
@@ -12,7 +13,8 @@ use crate::body::{Attractor, Bodies};
 use crate::motion::{Drive, Fault, Push};
 use crate::store::{Arena, AttractorId, BodyId, record};
 pub use body::Body;
-pub use command::{Command, CommandError, Commands, INPUT_MAX, Reply};
+pub use command::{Command, CommandError, INPUT_MAX, Reply};
+pub use commands::Commands;
 pub use config::{ConfigError, Integrator, WorldDef};
 pub use status::{Bound, Status, StatusEntry};
 
