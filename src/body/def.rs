@@ -66,7 +66,7 @@ impl Default for BodyDef {
             angular_velocity: AngularVelocity::ZERO,
             force: Vec2::default(),
             torque: Torque::ZERO,
-            mass: Mass::from_bits(1 << 32),
+            mass: Mass::from_bits(1 << 64),
             inertia: Inertia::from_bits(1 << 64),
             fixed_rotation: false,
             linear_damping: Damping::ZERO,

@@ -7,7 +7,7 @@ use super::integrate::{Integrator, Scheme};
 use super::span::Span;
 use crate::body::{Attractor, Bodies, BodyData};
 use crate::geom::Vec2;
-use crate::num::{Acceleration, Force, Mu, Torque, clamp_i64, div, mul, mul_div};
+use crate::num::{Acceleration, Force, Mu, Torque, clamp_i64, mul, mul_div};
 use crate::store::{Arena, clone_fields, record};
 
 /// A force and a torque that act on a body for one tick.
@@ -59,15 +59,14 @@ clone_fields!(Drive { scheme, span, half, kick, bow, damped, limited, sources })
 
 /// The constant acceleration of a body in m/s² and rad/s², 48 fraction bits, and whether it had to be limited.
 ///
-/// Why nothing overflows: |F| ≤ 10¹⁴ N is below 2¹¹¹ in bits, shifted by 16 it fits; the sums saturate.
+/// Why nothing overflows: quotients have 256-bit numerators and saturate, as the sums do.
 pub(crate) fn acceleration(data: &BodyData, gravity: Vec2<Acceleration>, push: Option<&Push>) -> ([i64; 3], bool) {
     if !data.is_dynamic() {
         return ([0; 3], false);
     }
     let along = |force: i128, push: Option<i128>, gravity: Acceleration| {
         let force = force.saturating_add(push.unwrap_or(0));
-        // F with 64 fraction bits over m with 32, to 48; two forces of 2¹¹¹ make 2¹¹², which still fits.
-        div(force.saturating_mul(1 << 16), data.mass.to_bits().into()).saturating_add(gravity.to_bits().into())
+        mul_div(force, 1 << 48, data.mass.to_bits()).saturating_add(gravity.to_bits().into())
     };
     let alpha = if data.fixed_rotation {
         0

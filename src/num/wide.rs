@@ -31,6 +31,10 @@ pub const fn mul_div(a: i128, b: i128, d: i128) -> i128 {
         // The quotient needs more than 128 bits, or there is no divisor.
         return if high == 0 && low == 0 { 0 } else { signed(negative, u128::MAX) };
     }
+    if high == 0 {
+        let (quotient, remainder) = (low / divisor, low % divisor);
+        return signed(negative, quotient + (remainder >= divisor - remainder) as u128);
+    }
     // Restoring division, one bit a round: remainder < divisor holds throughout.
     let (mut remainder, mut quotient) = (high, 0u128);
     let mut bit = 128;

@@ -8,7 +8,7 @@ use crate::geom::Vec2;
 use crate::motion::{Push, acceleration};
 use crate::num::{
     Acceleration, AngularImpulse, AngularVelocity, Damping, Decimal, Force, Impulse, Length, Mu, Quantity, RangeError,
-    Torque, Velocity, div, mul_div,
+    Torque, Velocity, mul_div,
 };
 use crate::store::{Arena, AttractorId, BodyId};
 
@@ -266,9 +266,8 @@ impl World {
         let impulse = impulse.checked()?;
         let data = self.bodies.cold.value(slot);
         let velocity = self.bodies.velocity(slot);
-        // |J| ≤ 10¹⁴ N s is below 2¹¹¹ in bits; shifted to 48 + 32 fraction bits it fits.
         let faster = |v: Velocity, j: Impulse| {
-            let change = div(j.to_bits().saturating_mul(1 << 16), data.mass.to_bits().into());
+            let change = mul_div(j.to_bits(), 1 << 48, data.mass.to_bits());
             wide_sum::<Velocity>(v, change).map(|bits| Velocity::from_bits(bits as i64))
         };
         let velocity = Vec2::new(faster(velocity.x, impulse.x)?, faster(velocity.y, impulse.y)?);

@@ -102,8 +102,8 @@ impl Body<'_> {
         let (v, data) = (self.velocity(), self.data());
         let square = |bits: i64| i128::from(bits).saturating_mul(bits.into());
         let speed2 = square(v.x.to_bits()).saturating_add(square(v.y.to_bits()));
-        // 96 + 32 and 96 + 64 fraction bits to 64, and the half.
-        let line = mul_div(speed2, data.mass.to_bits().into(), 1 << 65);
+        // 96 + 64 fraction bits to 64, and the half.
+        let line = mul_div(speed2, data.mass.to_bits(), 1 << 97);
         let turn = mul_div(square(self.angular_velocity().to_bits()), data.inertia.to_bits(), 1 << 97);
         Energy::from_bits(line.saturating_add(turn))
     }
@@ -113,6 +113,6 @@ impl Body<'_> {
         let (p, g) = (self.position(), self.world.config.gravity);
         let product = |a: i64, b: i64| i128::from(a).saturating_mul(b.into());
         let height = product(g.x.to_bits(), p.x.to_bits()).saturating_add(product(g.y.to_bits(), p.y.to_bits()));
-        Energy::from_bits(mul_div(height.saturating_neg(), self.data().mass.to_bits().into(), 1 << 48))
+        Energy::from_bits(mul_div(height.saturating_neg(), self.data().mass.to_bits(), 1 << 80))
     }
 }

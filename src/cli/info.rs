@@ -1,0 +1,55 @@
+//! `tamias2d info`
+
+use super::table::rounded;
+use super::{Failure, verify};
+use std::path::PathBuf;
+use tamias2d::BodyKind;
+
+/// Say what is in a replay, without playing it.
+///
+/// The file is read to its end, so its checks and its digest are checked too; the hashes of the ticks are not (that
+/// is what `verify` does).
+#[derive(clap::Args)]
+pub(crate) struct Info {
+    /// A replay file
+    file: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl Info {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        let player = verify::open(&self.file)?;
+        let world = player.world().clone();
+        let config = world.config();
+        let kinds = [BodyKind::Dynamic, BodyKind::Kinematic, BodyKind::Static]
+            .map(|kind| world.bodies().filter(|body| body.kind() == kind).count());
+        let [dynamic, kinematic, fixed] = kinds;
+        let attractors = world.attractors().count();
+        let (version, law) = (tamias2d::replay::REPLAY_VERSION, tamias2d::LAW);
+        let (rate, substeps) = (config.tick_rate, config.substeps);
+        let start = world.hash();
+        let summary = player.inspect().map_err(|error| verify::failure(&self.file, &error))?;
+        let (ticks, commands, end) = (summary.ticks, summary.commands, summary.hash);
+        let milliseconds = u128::from(ticks) * 1000 / u128::from(rate);
+        if self.json {
+            println!(
+                "{{\"format\":{version},\"law\":{law},\"tick_rate\":{rate},\"substeps\":{substeps},\"dynamic\":{dynamic},\
+                 \"kinematic\":{kinematic},\"static\":{fixed},\"attractors\":{attractors},\"ticks\":{ticks},\
+                 \"commands\":{commands},\"first_hash\":\"{start:016x}\",\"last_hash\":\"{end:016x}\"}}"
+            );
+            return Ok(());
+        }
+        println!("replay      format {version}, arithmetic law {law}");
+        println!("time        {ticks} ticks of 1/{rate} s, {}.{:03} s", milliseconds / 1000, milliseconds % 1000);
+        println!("motion      {:?}, {substeps} substeps", config.integrator);
+        println!("gravity     ({}, {}) m/s²", rounded(config.gravity.x, 6), rounded(config.gravity.y, 6));
+        println!(
+            "at start    {dynamic} dynamic, {kinematic} kinematic, {fixed} static bodies, {attractors} attractors"
+        );
+        println!("commands    {commands}");
+        println!("hashes      {start:016x} at tick 0, {end:016x} at the end");
+        Ok(())
+    }
+}

@@ -1,0 +1,107 @@
+//! Commands, their help, and how they end.
+
+mod golden;
+mod info;
+mod run;
+mod table;
+mod verify;
+
+use clap::{Parser, Subcommand};
+use std::fmt;
+use std::io::{IsTerminal, Write};
+use std::process::ExitCode;
+
+/// Deterministic fixed-point 2D physics: run scenes, record and verify replays.
+///
+/// The same scene gives the same bits on every machine. A replay holds the hash of the complete state after every
+/// tick, and `verify` recomputes each of them.
+#[derive(Parser)]
+#[command(
+    version,
+    after_help = "\
+Examples:
+  tamias2d scenes --show orbit > orbit.json          a scene to start from
+  tamias2d run orbit.json --ticks 600 --every 60     where its bodies are, each second
+  tamias2d run orbit.json --ticks 600 --record orbit.replay
+  tamias2d verify orbit.replay                       on any machine: the same hashes at every tick
+
+Exit status: 0 ok; 1 diverged, failed or truncated; 2 wrong usage, unreadable, or bytes after the end."
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Run(run::Run),
+    Verify(verify::Verify),
+    Info(info::Info),
+    Scenes(golden::Scenes),
+    Record(golden::Record),
+}
+
+/// How a command failed: its exit status and the one line for stderr.
+pub(crate) struct Failure {
+    status: u8,
+    message: String,
+}
+
+impl Failure {
+    /// Diverged, failed or truncated.
+    pub(crate) fn failed(message: impl fmt::Display) -> Self {
+        Failure { status: 1, message: message.to_string() }
+    }
+
+    /// Wrong usage, unreadable, or bytes after the end.
+    pub(crate) fn usage(message: impl fmt::Display) -> Self {
+        Failure { status: 2, message: message.to_string() }
+    }
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        Failure::failed(format_args!("cannot write: {error}"))
+    }
+}
+
+pub(crate) fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let result = match cli.command {
+        Command::Run(run) => run.execute(),
+        Command::Verify(verify) => verify.execute(),
+        Command::Info(info) => info.execute(),
+        Command::Scenes(scenes) => scenes.execute(),
+        Command::Record(record) => record.execute(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure { status, message }) => {
+            // One line, whatever the message holds; that stderr is closed is no reason to panic.
+            let _ = writeln!(std::io::stderr(), "tamias2d: {}", message.replace('\n', " "));
+            ExitCode::from(status)
+        }
+    }
+}
+
+/// A progress bar on stderr where that is a terminal, else nothing.
+pub(crate) fn progress(length: u64, unit: &str) -> indicatif::ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return indicatif::ProgressBar::hidden();
+    }
+    let template = format!("{{bar:40}} {{percent}} % of {{len}} {unit}, {{eta}} left");
+    let style = indicatif::ProgressStyle::with_template(&template).unwrap_or(indicatif::ProgressStyle::default_bar());
+    indicatif::ProgressBar::new(length).with_style(style)
+}
+
+/// Reads a scene from a file, or from standard input for `-`.
+pub(crate) fn read_scene(path: &str) -> Result<tamias2d::scene::Scene, Failure> {
+    let text = if path == "-" { std::io::read_to_string(std::io::stdin()) } else { std::fs::read_to_string(path) };
+    let text = text.map_err(|error| Failure::usage(format_args!("{path}: {error}")))?;
+    tamias2d::scene::Scene::parse(&text).map_err(|error| Failure::usage(format_args!("{path}: {error}")))
+}
+
+/// A JSON string.
+pub(crate) fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}

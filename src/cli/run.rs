@@ -1,0 +1,122 @@
+//! `tamias2d run`
+
+use super::table::{Format, Table};
+use super::{Failure, progress, read_scene};
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::PathBuf;
+use tamias2d::replay::Recorder;
+use tamias2d::scene::{Scene, Script};
+use tamias2d::{Commands, World};
+
+/// Run a scene and print where its bodies are.
+///
+/// One row per body and tick, from tick 0 on: tick, time in s, body (its name, or its index), x and y in m, angle in
+/// radians in [0, 2π), turns (the unwrapped angle), vx and vy in m/s, omega in rad/s. x, y, turns, vx, vy and omega
+/// are printed exactly, with all their digits; time and angle to 15 decimals.
+#[derive(clap::Args)]
+pub(crate) struct Run {
+    /// The scene, a JSON file; - is standard input. See `tamias2d scenes` for examples
+    scene: String,
+    /// How many ticks to run
+    #[arg(long, value_name = "N")]
+    ticks: u64,
+    /// Print every K-th tick only
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    every: u64,
+    /// How to print
+    #[arg(long, value_enum, default_value_t = Format::Csv)]
+    format: Format,
+    /// Record a replay into this file
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+}
+
+impl Run {
+    pub(crate) fn execute(self) -> Result<(), Failure> {
+        let scene = read_scene(&self.scene)?;
+        let (world, script) = scene.start().map_err(|error| Failure::usage(format_args!("{}: {error}", self.scene)))?;
+        let Some(path) = &self.record else { return self.steps(script, world).map(drop) };
+        let shown = path.display();
+        let failed = |error| Failure::failed(format_args!("{shown}: {error}"));
+        let file = File::create(path).map_err(|error| Failure::usage(format_args!("{shown}: {error}")))?;
+        let recorder = Recorder::new(world, BufWriter::new(file)).map_err(failed)?;
+        self.steps(script, recorder)?.finish().map_err(failed)?;
+        Ok(())
+    }
+
+    fn steps<S: Stage>(&self, mut script: Script<'_>, mut stage: S) -> Result<S, Failure> {
+        let out = BufWriter::new(std::io::stdout().lock());
+        let mut table = Table::new(out, self.format, stage.world().config().tick_rate)?;
+        let bar = progress(self.ticks, "ticks");
+        for tick in 0..=self.ticks {
+            if tick > 0 {
+                let error = |error| Failure::failed(format_args!("{}: tick {}: {error}", self.scene, tick - 1));
+                script.apply(tick - 1, &mut stage).map_err(error)?;
+                stage.step();
+            }
+            if tick % self.every == 0 {
+                for body in stage.world().bodies() {
+                    table.row(tick, script.label(body.id()), &body)?;
+                }
+                bar.set_position(tick);
+            }
+        }
+        bar.finish_and_clear();
+        table.finish()?;
+        report_status(&self.scene, stage.world());
+        Ok(stage)
+    }
+}
+
+/// Says on stderr what went out of range: the run is good, but the numbers hit a bound.
+fn report_status(scene: &str, world: &World) {
+    for entry in world.status().entries() {
+        let _ = writeln!(std::io::stderr(), "tamias2d: {scene}: {entry}");
+    }
+}
+
+/// What steps: a world, or a recorder around one.
+pub(crate) trait Stage: Commands {
+    fn world(&self) -> &World;
+    fn step(&mut self);
+}
+
+impl Stage for World {
+    fn world(&self) -> &World {
+        self
+    }
+
+    fn step(&mut self) {
+        World::step(self);
+    }
+}
+
+impl<W: Write> Stage for Recorder<W> {
+    fn world(&self) -> &World {
+        Recorder::world(self)
+    }
+
+    fn step(&mut self) {
+        Recorder::step(self);
+    }
+}
+
+/// Records a scene for its own number of ticks; `each` sees the world at tick 0 and after each tick.
+pub(crate) fn record_scene<W: Write>(
+    scene: &Scene,
+    out: W,
+    mut each: impl FnMut(&World, &Script<'_>),
+) -> Result<W, Failure> {
+    let name = scene.name();
+    let failed = |error: &dyn std::fmt::Display| Failure::failed(format_args!("{name}: {error}"));
+    let (world, mut script) = scene.start().map_err(|error| failed(&error))?;
+    let mut recorder = Recorder::new(world, out).map_err(|error| failed(&error))?;
+    each(recorder.world(), &script);
+    for tick in 0..scene.ticks() {
+        script.apply(tick, &mut recorder).map_err(|error| failed(&error))?;
+        recorder.step();
+        each(recorder.world(), &script);
+    }
+    recorder.finish().map_err(|error| failed(&error))
+}

@@ -1,0 +1,92 @@
+//! What a body's row looks like, as CSV and as JSON. All numbers are exact or rounded from exact ones.
+
+use std::io::{self, Write};
+use tamias2d::num::{Decimal, Quantity};
+use tamias2d::{Angle, Body};
+
+/// How rows are written.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Format {
+    /// A header and a line per body and tick.
+    Csv,
+    /// A list of objects, one on each line.
+    Json,
+}
+
+/// Writes rows.
+pub(crate) struct Table<W> {
+    out: W,
+    format: Format,
+    rows: u64,
+    tick_rate: u32,
+}
+
+impl<W: Write> Table<W> {
+    pub(crate) fn new(mut out: W, format: Format, tick_rate: u32) -> io::Result<Self> {
+        match format {
+            Format::Csv => writeln!(out, "tick,time,body,x,y,angle,turns,vx,vy,omega")?,
+            Format::Json => write!(out, "[")?,
+        }
+        Ok(Table { out, format, rows: 0, tick_rate })
+    }
+
+    pub(crate) fn row(&mut self, tick: u64, label: &str, body: &Body<'_>) -> io::Result<()> {
+        let (p, v) = (body.position(), body.velocity());
+        let (time, angle) = (time(tick, self.tick_rate), phi(body.angle()));
+        let (turns, omega) = (body.angle(), body.angular_velocity());
+        let (x, y, vx, vy) = (p.x, p.y, v.x, v.y);
+        match self.format {
+            Format::Csv => {
+                let label = csv_field(label);
+                writeln!(self.out, "{tick},{time},{label},{x},{y},{angle},{turns},{vx},{vy},{omega}")?;
+            }
+            Format::Json => {
+                let comma = if self.rows == 0 { "" } else { "," };
+                let label = super::quoted(label);
+                write!(
+                    self.out,
+                    "{comma}\n{{\"tick\":{tick},\"time\":{time},\"body\":{label},\"x\":{x},\"y\":{y},\"angle\":{angle},\
+                     \"turns\":{turns},\"vx\":{vx},\"vy\":{vy},\"omega\":{omega}}}"
+                )?;
+            }
+        }
+        self.rows += 1;
+        Ok(())
+    }
+
+    pub(crate) fn finish(mut self) -> io::Result<()> {
+        if self.format == Format::Json {
+            writeln!(self.out, "\n]")?;
+        }
+        self.out.flush()
+    }
+}
+
+/// The seconds after `tick` ticks, rounded to 15 decimals.
+fn time(tick: u64, tick_rate: u32) -> String {
+    const SCALE: u128 = 1_000_000_000_000_000;
+    let rate = u128::from(tick_rate);
+    let scaled = (u128::from(tick) * SCALE * 2 + rate) / (2 * rate);
+    format!("{}.{:015}", scaled / SCALE, scaled % SCALE)
+}
+
+/// φ in [0, 2π), to 15 decimals, rounded down so that it never reads 2π.
+fn phi(angle: Angle) -> String {
+    const TAU_Q60: u128 = 7_244_019_458_077_122_842;
+    const SCALE: u128 = 1_000_000_000_000_000;
+    // 48 + 60 fraction bits; the whole part is below 7, the scaled fraction below 2^60 · 2^50.
+    let product = (u128::from(angle.fraction()) * TAU_Q60) >> 48;
+    let (whole, fraction) = (product >> 60, product & ((1 << 60) - 1));
+    format!("{whole}.{:015}", (fraction * SCALE) >> 60)
+}
+
+/// A CSV field, quoted where it must be.
+fn csv_field(text: &str) -> String {
+    if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.into() }
+}
+
+/// A number rounded to some decimals, for summaries.
+pub(crate) fn rounded(value: impl Quantity, decimals: usize) -> String {
+    let decimal: Decimal = value.decimal();
+    format!("{decimal:.decimals$}")
+}
