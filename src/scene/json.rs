@@ -1,6 +1,7 @@
 //! The shape of a scene file.
 
 use super::number::{Number, Pair};
+use super::object::Object;
 use crate::body::{Attractor, BodyDef, BodyKind};
 use crate::motion::Integrator;
 use crate::num::{
@@ -15,7 +16,7 @@ use serde::de::{Deserializer, Error, SeqAccess, Visitor};
 pub(super) struct SceneJson {
     pub(super) name: String,
     pub(super) tick_rate: u32,
-    pub(super) bodies: Vec<BodyJson>,
+    pub(super) bodies: Vec<Object<BodyJson>>,
     #[serde(default = "four")]
     pub(super) substeps: u32,
     #[serde(default)]
@@ -23,9 +24,9 @@ pub(super) struct SceneJson {
     #[serde(default)]
     pub(super) gravity: Pair<Acceleration>,
     #[serde(default)]
-    pub(super) attractors: Vec<AttractorJson>,
+    pub(super) attractors: Vec<Object<AttractorJson>>,
     #[serde(default)]
-    pub(super) commands: Vec<CommandJson>,
+    pub(super) commands: Vec<Object<CommandJson>>,
     #[serde(default = "six_hundred")]
     pub(super) ticks: u64,
     #[serde(default)]
@@ -212,7 +213,7 @@ pub(super) struct CommandJson {
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[allow(clippy::large_enum_variant, reason = "a script is read once")]
 pub(super) enum Action {
-    CreateBody(BodyJson),
+    CreateBody(Object<BodyJson>),
     DestroyBody { body: Reference },
     SetKind { body: Reference, kind: KindJson },
     SetPosition { body: Reference, position: Pair<Length> },
@@ -230,7 +231,7 @@ pub(super) enum Action {
     ApplyTorque { body: Reference, torque: Number<Torque> },
     ApplyImpulse { body: Reference, impulse: Pair<Impulse>, point: Option<Pair<Length>> },
     ApplyAngularImpulse { body: Reference, impulse: Number<AngularImpulse> },
-    CreateAttractor(AttractorJson),
+    CreateAttractor(Object<AttractorJson>),
     SetAttractor { attractor: Reference, position: Pair<Length>, mu: Number<Mu> },
     DestroyAttractor { attractor: Reference },
     SetGravity { gravity: Pair<Acceleration> },

@@ -59,6 +59,7 @@
 mod error;
 mod json;
 mod number;
+mod object;
 mod script;
 
 pub use error::SceneError;

@@ -2,6 +2,7 @@
 
 use super::error::SceneError;
 use super::json::{Action, BodyJson, Reference, SceneJson, inertia};
+use super::object::Object;
 use crate::World;
 use crate::body::{Attractor, BodyDef};
 use crate::store::{AttractorId, BodyId};
@@ -21,7 +22,7 @@ impl Scene {
     /// references to what the scene does not have, each with its place.
     pub fn parse(text: &str) -> Result<Scene, SceneError> {
         let mut json = serde_json::Deserializer::from_str(text);
-        let file: SceneJson = serde_path_to_error::deserialize(&mut json).map_err(|error| {
+        let Object(file): Object<SceneJson> = serde_path_to_error::deserialize(&mut json).map_err(|error| {
             let path = error.path().to_string();
             SceneError::new(if path == "." { String::new() } else { path }, error.inner())
         })?;
@@ -59,11 +60,11 @@ impl Scene {
     pub fn start(&self) -> Result<(World, Script<'_>), SceneError> {
         let mut world = World::new(&self.def).map_err(|error| SceneError::new("", error))?;
         let mut script = Script::new(self);
-        for (index, body) in self.file.bodies.iter().enumerate() {
+        for (index, Object(body)) in self.file.bodies.iter().enumerate() {
             let place = || format!("bodies[{index}]");
             script.create_body(&mut world, body, &place)?;
         }
-        for (index, attractor) in self.file.attractors.iter().enumerate() {
+        for (index, Object(attractor)) in self.file.attractors.iter().enumerate() {
             let place = || format!("attractors[{index}]");
             script.create_attractor(&mut world, attractor.name.as_deref(), attractor.attractor(), &place)?;
         }
@@ -121,7 +122,7 @@ impl<'s> Script<'s> {
     fn new(scene: &'s Scene) -> Self {
         let commands = &scene.file.commands;
         let mut order: Vec<usize> = (0..commands.len()).collect();
-        order.sort_by_key(|&at| commands[at].tick);
+        order.sort_by_key(|&at| commands[at].0.tick);
         Script { scene, order, next: 0, bodies: Cast::new(), attractors: Cast::new(), labels: BTreeMap::new() }
     }
 
@@ -135,15 +136,15 @@ impl<'s> Script<'s> {
     /// Errors: a command that the world refuses, with its place. Those before it have been carried out.
     pub fn apply(&mut self, tick: u64, world: &mut impl Commands) -> Result<(), SceneError> {
         while let Some(&at) = self.order.get(self.next) {
-            let command = &self.scene.file.commands[at];
+            let Object(command) = &self.scene.file.commands[at];
             if command.tick > tick {
                 break;
             }
             self.next = self.next.saturating_add(1);
             let place = || format!("commands[{at}]");
             match &command.action {
-                Action::CreateBody(body) => self.create_body(world, body, &place)?,
-                Action::CreateAttractor(attractor) => {
+                Action::CreateBody(Object(body)) => self.create_body(world, body, &place)?,
+                Action::CreateAttractor(Object(attractor)) => {
                     self.create_attractor(world, attractor.name.as_deref(), attractor.attractor(), &place)?;
                 }
                 action => {
@@ -191,7 +192,7 @@ impl<'s> Script<'s> {
             self.attractors.find(reference).ok_or_else(|| format!("there is no attractor {}", show(reference)))
         };
         Ok(match action {
-            Action::CreateBody(def) => Command::CreateBody { def: def.def() },
+            Action::CreateBody(Object(def)) => Command::CreateBody { def: def.def() },
             Action::DestroyBody { body: b } => Command::DestroyBody { body: body(b)? },
             Action::SetKind { body: b, kind } => Command::SetKind { body: body(b)?, kind: (*kind).into() },
             Action::SetPosition { body: b, position } => Command::SetPosition { body: body(b)?, position: position.0 },
@@ -223,7 +224,7 @@ impl<'s> Script<'s> {
             Action::ApplyAngularImpulse { body: b, impulse } => {
                 Command::ApplyAngularImpulse { body: body(b)?, impulse: impulse.0 }
             }
-            Action::CreateAttractor(attractor) => Command::CreateAttractor { attractor: attractor.attractor() },
+            Action::CreateAttractor(Object(attractor)) => Command::CreateAttractor { attractor: attractor.attractor() },
             Action::SetAttractor { attractor, position, mu } => Command::SetAttractor {
                 id: source(attractor)?,
                 attractor: Attractor { position: position.0, mu: mu.0 },

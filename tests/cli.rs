@@ -1,0 +1,358 @@
+//! The command line program, run as its users run it: output, exit status, one line on stderr.
+#![cfg(feature = "cli")]
+#![allow(clippy::disallowed_types, clippy::arithmetic_side_effects, reason = "tests, not the engine")]
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// What a run of the program gave.
+struct Output {
+    status: i32,
+    out: String,
+    err: String,
+}
+
+fn tamias(args: &[&str]) -> Output {
+    tamias_with_input(args, "")
+}
+
+fn tamias_with_input(args: &[&str], input: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_tamias2d"))
+        .args(args)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    // A program that does not read its input may close it first.
+    let _ = child.stdin.take().expect("piped").write_all(input.as_bytes());
+    let output = child.wait_with_output().expect("the program ends");
+    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
+    Output { status: output.status.code().expect("no signal"), out: text(output.stdout), err: text(output.stderr) }
+}
+
+/// A fresh folder for one test.
+fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir_all(&path).expect("a folder for the test");
+    path
+}
+
+fn shown(path: &Path) -> &str {
+    path.to_str().expect("UTF-8")
+}
+
+const TC2: &str = r#"{ "name": "tc2", "gravity": [0, 0], "tick_rate": 60, "substeps": 4,
+  "bodies": [ { "name": "left", "kind": "dynamic", "position": [20, 20], "angle": 0, "velocity": [0, 0], "angular_velocity": 0,
+                "force": [100, 0], "torque": 0, "mass": 10, "inertia": 15, "colliders": [] } ],
+  "attractors": [] }"#;
+
+fn run(scene: &str, more: &[&str]) -> Output {
+    let mut args = vec!["run", "-"];
+    args.extend(more);
+    tamias_with_input(&args, scene)
+}
+
+#[test]
+fn help_says_what_each_command_does() {
+    for (args, words) in [
+        (vec!["--help"], vec!["run", "verify", "info", "scenes", "record", "Exit status", "Examples"]),
+        (vec!["run", "--help"], vec!["--ticks", "--every", "--format", "--record", "radians", "turns"]),
+        (vec!["verify", "--help"], vec!["first bad tick", "--json", "--hashes"]),
+        (vec!["info", "--help"], vec!["--json"]),
+        (vec!["record", "--help"], vec!["GOLDEN.txt", "--all"]),
+    ] {
+        let output = tamias(&args);
+        assert_eq!(output.status, 0, "{args:?}");
+        for word in words {
+            assert!(output.out.contains(word), "{args:?} does not mention {word}:\n{}", output.out);
+        }
+    }
+}
+
+#[test]
+fn run_prints_tc2_as_csv() {
+    let output = run(TC2, &["--ticks", "240", "--every", "60"]);
+    assert_eq!((output.status, output.err.as_str()), (0, ""));
+    let lines: Vec<&str> = output.out.lines().collect();
+    assert_eq!(lines[0], "tick,time,body,x,y,angle,turns,vx,vy,omega");
+    assert_eq!(lines[1], "0,0.000000000000000,left,20,20,0.000000000000000,0,0,0,0");
+    assert_eq!(lines.len(), 6);
+    for (second, expected) in [(1, 25.0), (2, 40.0), (3, 65.0), (4, 100.0)] {
+        let fields: Vec<&str> = lines[1 + second].split(',').collect();
+        assert_eq!(fields[0], (60 * second).to_string());
+        assert_eq!(fields[1], format!("{second}.000000000000000"));
+        let x: f64 = fields[3].parse().expect("a number");
+        assert!((x - expected).abs() < 1e-6, "x at {second} s: {x}");
+        assert_eq!(fields[4], "20");
+    }
+}
+
+#[test]
+fn run_prints_json_that_parses_and_agrees_with_csv() {
+    let csv = run(TC2, &["--ticks", "3"]);
+    let json = run(TC2, &["--ticks", "3", "--format", "json"]);
+    assert_eq!(json.status, 0);
+    let rows: Vec<serde_json::Value> = serde_json::from_str(&json.out).expect("JSON");
+    assert_eq!(rows.len(), 4);
+    assert_eq!(rows.len(), csv.out.lines().count() - 1);
+    assert_eq!(rows[2]["tick"], 2);
+    assert_eq!(rows[2]["body"], "left");
+    let none = run(r#"{"name":"n","tick_rate":60,"bodies":[]}"#, &["--ticks", "3", "--format", "json"]);
+    assert!(serde_json::from_str::<Vec<serde_json::Value>>(&none.out).expect("JSON").is_empty());
+}
+
+#[test]
+fn numbers_are_taken_from_their_digits_and_printed_exactly() {
+    // The velocity lies 1e-60 above the middle of two multiples of 2^-48: through an f64 it would round down.
+    let scene = r#"{"name":"n","tick_rate":60,"bodies":[{"position":[0.1,-1e-9],
+        "velocity":[0.10000000000000319744231092045083642005920410156250000000001,-1.5E+1]}]}"#;
+    let output = run(scene, &["--ticks", "0"]);
+    let row = output.out.lines().nth(1).expect("one body");
+    assert_eq!(
+        row,
+        "0,0.000000000000000,0,0.1000000000931322574615478515625,-0.000000000931322574615478515625,0.000000000000000,0,\
+         0.100000000000004973799150320701301097869873046875,-15,0"
+    );
+}
+
+#[test]
+fn angle_stays_below_two_pi_and_turns_are_unwrapped() {
+    let scene = r#"{"name":"n","tick_rate":60,"bodies":[
+        {"angle":6.283185307179586},{"angle":0,"angular_velocity":-0.0000000000001},{"angular_velocity":20}]}"#;
+    let output = run(scene, &["--ticks", "60"]);
+    for line in output.out.lines().skip(1) {
+        let angle: f64 = line.split(',').nth(5).expect("a field").parse().expect("a number");
+        assert!((0.0..std::f64::consts::TAU).contains(&angle), "{line}");
+    }
+    let last = output.out.lines().last().expect("rows");
+    let turns: f64 = last.split(',').nth(6).expect("a field").parse().expect("a number");
+    assert!((turns * std::f64::consts::TAU - 20.0).abs() < 1e-9, "{last}");
+}
+
+#[test]
+fn names_are_quoted_where_they_must_be() {
+    let scene = r#"{"name":"n","tick_rate":60,"bodies":[{"name":"a, \"b\""},{}]}"#;
+    let output = run(scene, &["--ticks", "0"]);
+    assert!(output.out.contains("0,0.000000000000000,\"a, \"\"b\"\"\",0"), "{}", output.out);
+    assert!(output.out.contains("0,0.000000000000000,1,0"), "{}", output.out);
+}
+
+#[test]
+fn script_creates_and_destroys() {
+    let scene = r#"{"name":"n","tick_rate":60,"bodies":[{"name":"a"}],"commands":[
+        {"tick":2,"do":{"destroy_body":{"body":"b"}}},
+        {"tick":1,"do":{"create_body":{"name":"b"}}},
+        {"tick":1,"do":{"apply_impulse":{"body":"b","impulse":[6,0]}}}]}"#;
+    let output = run(scene, &["--ticks", "3"]);
+    let bodies: Vec<String> =
+        output.out.lines().skip(1).map(|l| l.split(',').step_by(2).take(2).collect::<Vec<_>>().join(":")).collect();
+    assert_eq!(bodies, ["0:a", "1:a", "2:a", "2:b", "3:a"]);
+    assert!(output.out.contains("2,0.033333333333333,b,0.1000000000931322574615478515625,0"), "{}", output.out);
+}
+
+#[test]
+fn bad_scenes_are_refused_with_their_place() {
+    let body = |keys: &str| format!(r#"{{"name":"n","tick_rate":60,"bodies":[{{}},{{{keys}}}]}}"#);
+    let top = |keys: &str| format!(r#"{{"name":"n","tick_rate":60,"bodies":[],{keys}}}"#);
+    let cases = [
+        ("".into(), "EOF while parsing"),
+        ("[]".into(), "invalid type: sequence, expected an object at line 1 column 0"),
+        (r#"{"name":"n","tick_rate":60,"bodies":[["a"]]}"#.into(), "bodies[0]: invalid type: sequence"),
+        (r#"{"name":"n","bodies":[]}"#.into(), "missing field `tick_rate`"),
+        (r#"{"tick_rate":60,"bodies":[]}"#.into(), "missing field `name`"),
+        (r#"{"name":"n","tick_rate":60}"#.into(), "missing field `bodies`"),
+        (r#"{"name":"n","tick_rate":0,"bodies":[]}"#.into(), "tick_rate 0 1/s is outside 15 … 1000 1/s"),
+        (r#"{"name":"n","tick_rate":60.5,"bodies":[]}"#.into(), "tick_rate: "),
+        (r#"{"name":"n","tick_rate":60,"bodies":[]} x"#.into(), "trailing characters"),
+        (r#"{"name":"n","tick_rate":60,"bodies":[],"name":"m"}"#.into(), "duplicate field `name`"),
+        (top(r#""substeps":65"#), "substeps 65 is outside 1 … 64"),
+        (top(r#""gravty":[0,0]"#), "gravty: unknown field `gravty`"),
+        (top(r#""gravity":[0]"#), "gravity: invalid length 1"),
+        (top(r#""gravity":[0,0,0]"#), "gravity: invalid length 3"),
+        (top(r#""gravity":["0",0]"#), "gravity[0]: acceleration is expected to be a number"),
+        (top(r#""gravity":[0,1e5]"#), "gravity[1]: acceleration 100000 m/s² is outside ±32768 m/s²"),
+        (top(r#""gravity":[0,1e999999999999]"#), "gravity[1]: acceleration is not a decimal number"),
+        (top(r#""attractors":[{"mu":1}]"#), "attractors[0]: missing field `position`"),
+        (
+            top(r#""attractors":[{"position":[0,0],"mu":-1}]"#),
+            "attractors[0].mu: mu -1 m³/s² is outside 0 … 2e21 m³/s²",
+        ),
+        (top(r#""commands":[{"tick":0,"do":{"fly":{}}}]"#), "unknown variant `fly`"),
+        (top(r#""commands":[{"tick":0,"do":{"set_mu":{"body":0,"mu":1}}}]"#), "commands[0]: there is no body 0"),
+        (top(r#""commands":[{"tick":0,"do":{"destroy_attractor":{"attractor":"x"}}}]"#), "there is no attractor \"x\""),
+        (
+            top(r#""commands":[{"tick":0,"do":{"create_body":{"kind":"static","force":[1,0]}}}]"#),
+            "commands[0]: a static",
+        ),
+        (body(r#""mass":0"#), "bodies[1].mass: mass 0 kg is outside 0.000001 … 2100000000 kg at line 1"),
+        (body(r#""mass":-1"#), "mass -1 kg is outside"),
+        (body(r#""mass":"1""#), "bodies[1].mass: mass is expected to be a number in kg"),
+        (body(r#""inertia":0"#), "bodies[1].inertia: inertia 0 kg m² is outside"),
+        (body(r#""kind":"ghost""#), "bodies[1].kind: unknown variant `ghost`"),
+        (body(r#""angle":6.2831853072"#), "bodies[1].angle: angle 6.2831853"),
+        (body(r#""angle":-0.1"#), "is outside 0 … 2π rad"),
+        (body(r#""position":[1000000000.1,0]"#), "bodies[1].position[0]: length 1000000000.1"),
+        (body(r#""velocity":[32768,0]"#), "bodies[1].velocity[0]: velocity 32768 m/s is outside ±32768 m/s"),
+        (body(r#""linear_damping":-1"#), "bodies[1].linear_damping: damping -1 1/s is outside 0 … 1000 1/s"),
+        (body(r#""kind":"static","velocity":[1,0]"#), "bodies[1]: a static body has no velocity, only 0 is accepted"),
+        (body(r#""kind":"kinematic","force":[1,0]"#), "bodies[1]: a kinematic body has no force, only 0 is accepted"),
+        (body(r#""fixed_rotation":true,"torque":1"#), "bodies[1]: a body with fixed rotation has no torque"),
+        (body(r#""mass":0.000001,"force":[1,0]"#), "bodies[1]: acceleration"),
+        (body(r#""colliders":[{"box":[1,1]}]"#), "bodies[1].colliders: this version has no colliders"),
+        (body(r#""name":"""#), "bodies[1]: its name must have 1 to 64 characters"),
+        (body(r#""name":"0""#), "bodies[1]: its name is in use already"),
+        (body(r#""user_data":-1"#), "bodies[1].user_data: invalid value"),
+    ];
+    for (scene, expected) in cases {
+        let output = run(&scene, &["--ticks", "1"]);
+        assert_eq!(output.status, 2, "{scene}\n{}", output.err);
+        assert!(output.err.contains(expected), "{scene}\nsays {}\nnot {expected}", output.err);
+        assert_eq!(output.err.lines().count(), 1, "{}", output.err);
+        assert_eq!(output.out, "", "{scene}");
+    }
+}
+
+#[test]
+fn every_key_is_legal_on_each_kind_where_it_means_something() {
+    for kind in ["dynamic", "kinematic", "static"] {
+        let moving = if kind == "static" { "0" } else { "1" };
+        let forced = if kind == "dynamic" { "1" } else { "0" };
+        let scene = format!(
+            r#"{{"name":"n","tick_rate":60,"bodies":[{{"name":"a","kind":"{kind}","position":[1,2],"angle":1,
+            "velocity":[{moving},0],"angular_velocity":{moving},"force":[{forced},0],"torque":{forced},"mass":2,"inertia":3,
+            "fixed_rotation":false,"linear_damping":{forced},"angular_damping":{forced},"mu":4,"user_data":5,
+            "colliders":[]}}]}}"#
+        );
+        let output = run(&scene, &["--ticks", "1"]);
+        assert_eq!((output.status, output.err.as_str()), (0, ""), "{scene}");
+    }
+}
+
+#[test]
+fn a_command_refused_while_running_fails_with_its_place() {
+    let scene = r#"{"name":"n","tick_rate":60,"bodies":[{"name":"a"}],"commands":[
+        {"tick":2,"do":{"apply_impulse":{"body":"a","impulse":[40000,0]}}}]}"#;
+    let output = run(scene, &["--ticks", "5"]);
+    assert_eq!(output.status, 1);
+    assert!(output.err.contains("tick 2: commands[0]: velocity 40000 m/s is outside ±32768 m/s"), "{}", output.err);
+}
+
+#[test]
+fn wrong_usage_is_2() {
+    for args in [
+        vec!["run"],
+        vec!["run", "-", "--ticks", "-1"],
+        vec!["run", "-", "--ticks", "1", "--every", "0"],
+        vec!["run", "no/such/scene.json", "--ticks", "1"],
+        vec!["fly"],
+        vec!["verify"],
+        vec!["verify", "no/such/file.replay"],
+        vec!["verify", "src"],
+        vec!["verify", "Cargo.toml"],
+        vec!["info", "Cargo.toml"],
+        vec!["record", "no_such_scene"],
+        vec!["record"],
+        vec!["scenes", "--show", "no_such_scene"],
+    ] {
+        let output = tamias(&args);
+        assert_eq!(output.status, 2, "{args:?}: {}", output.err);
+        assert!(!output.err.is_empty(), "{args:?}");
+    }
+}
+
+#[test]
+fn recorded_runs_verify_and_bad_files_are_named() {
+    let folder = folder("recorded");
+    let good = folder.join("good.replay");
+    let output = run(TC2, &["--ticks", "100", "--every", "100", "--record", shown(&good)]);
+    assert_eq!((output.status, output.err.as_str()), (0, ""));
+    let output = tamias(&["verify", shown(&good)]);
+    assert_eq!(output.status, 0);
+    assert!(output.out.starts_with("ok ") && output.out.contains(": 100 ticks, 0 commands, hash "), "{}", output.out);
+
+    let bytes = std::fs::read(&good).expect("just written");
+    let write = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).expect("the test's folder");
+        path
+    };
+    // An idle tick has 13 bytes, the end 25: cut inside tick 98, and change the hash of tick 50.
+    let cut = write("cut.replay", &bytes[..bytes.len() - 25 - 13 * 2 - 3]);
+    let mut changed = bytes.clone();
+    let at = bytes.len() - 25 - 13 * 51 + 1;
+    changed[at] ^= 1;
+    let changed = write("changed.replay", &changed);
+    let mut longer = bytes.clone();
+    longer.push(0);
+    let longer = write("longer.replay", &longer);
+    for (path, status, expected) in [
+        (&cut, 1, "truncated at byte"),
+        (&cut, 1, "after 97 whole ticks"),
+        (&changed, 1, "replay corrupt at tick 50, byte"),
+        (&longer, 2, "unexpected bytes after the replay's end"),
+    ] {
+        let output = tamias(&["verify", shown(path)]);
+        assert_eq!(output.status, status, "{}", output.err);
+        assert!(output.err.contains(expected) && output.err.contains(shown(path)), "{}", output.err);
+        assert_eq!(output.err.lines().count(), 1);
+    }
+    let all = tamias(&["verify", shown(&folder)]);
+    assert_eq!((all.status, all.err.lines().count(), all.out.lines().count()), (2, 3, 1), "{}", all.err);
+    let json = tamias(&["verify", "--json", shown(&good), shown(&changed)]);
+    assert_eq!(json.status, 1);
+    let results: Vec<serde_json::Value> = serde_json::from_str(&json.out).expect("JSON");
+    assert_eq!(results[0]["bad_tick"], 50);
+    assert_eq!((results[1]["ok"].clone(), results[1]["ticks"].clone()), (true.into(), 100.into()));
+
+    let info = tamias(&["info", shown(&good)]);
+    assert_eq!(info.status, 0);
+    assert!(info.out.contains("100 ticks of 1/60 s, 1.666 s"), "{}", info.out);
+    let info = tamias(&["info", "--json", shown(&good)]);
+    let value: serde_json::Value = serde_json::from_str(&info.out).expect("JSON");
+    assert_eq!((value["ticks"].clone(), value["tick_rate"].clone()), (100.into(), 60.into()));
+    assert_eq!(tamias(&["info", shown(&cut)]).status, 1);
+}
+
+#[test]
+fn recording_does_not_change_what_is_computed() {
+    let folder = folder("twice");
+    let (a, b) = (folder.join("a.replay"), folder.join("b.replay"));
+    for path in [&a, &b] {
+        let recorded = tamias(&["run", "replays/everything.json", "--ticks", "300", "--record", shown(path)]);
+        let plain = tamias(&["run", "replays/everything.json", "--ticks", "300"]);
+        assert_eq!(recorded.out, plain.out);
+    }
+    assert_eq!(std::fs::read(a).expect("written"), std::fs::read(b).expect("written"));
+}
+
+#[test]
+fn the_goldens_are_what_this_build_records() {
+    let folder = folder("goldens");
+    assert_eq!(tamias(&["record", "--all", "--dir", shown(&folder)]).status, 0);
+    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("replays");
+    let mut compared = 0;
+    for entry in folder.read_dir().expect("a folder") {
+        let name = entry.expect("an entry").file_name();
+        let (new, old) = (std::fs::read(folder.join(&name)), std::fs::read(committed.join(&name)));
+        assert!(new.expect("written") == old.expect("committed"), "{name:?} is not what this build records");
+        compared += 1;
+    }
+    let replays = committed.read_dir().expect("a folder").filter_map(Result::ok);
+    let replays = replays.filter(|e| e.path().extension().is_some_and(|x| x == "replay")).count();
+    assert_eq!(compared, replays + 1, "every committed replay is recorded, and GOLDEN.txt");
+}
+
+#[test]
+fn scenes_are_listed_and_shown() {
+    let list = tamias(&["scenes"]);
+    assert_eq!(list.status, 0);
+    for line in list.out.lines() {
+        let name = line.split_whitespace().next().expect("a name");
+        let show = tamias(&["scenes", "--show", name]);
+        assert_eq!(run(&show.out, &["--ticks", "1"]).status, 0, "{name}");
+    }
+}
