@@ -46,7 +46,7 @@ macro_rules! table {
                 let offset = reader.offset();
                 let cold = Record::load(reader, "bodies")?;
                 let bodies = Bodies { cold, $($column: Record::load(reader, $path)?),* };
-                bodies.check().map_err(|reason| reader.invalid(offset, field, reason))?;
+                bodies.check_values().map_err(|reason| reader.invalid(offset, field, reason))?;
                 Ok(bodies)
             }
 
@@ -144,6 +144,11 @@ impl Bodies {
     /// Every invariant of the table; what is wrong, if one is broken.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         self.cold.check()?;
+        self.check_values()
+    }
+
+    /// Whether columns are as long as the slots and values fit their bodies; what is wrong, if not.
+    fn check_values(&self) -> Result<(), &'static str> {
         if !self.is_rectangular() {
             return Err("has columns that are not as long as its slots");
         }

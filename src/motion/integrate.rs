@@ -132,12 +132,11 @@ fn drift_run(bodies: &mut Bodies, drive: &Drive, run: Range<usize>, line: i64, t
     // v with 48 fraction bits times T with 63, to the 32 of a position and the 48 of an angle.
     const TO_LENGTH: u32 = 48 + 63 - 32;
     const TO_ANGLE: u32 = 63;
-    let way = |v: i64, span: i64, bow: i64, shift: u32| mul_add(v, span, i128::from(bow) << BOW_SHIFT, shift);
 
     for (x, v, bow) in [(x, vx, bow_x), (y, vy, bow_y)] {
         let columns = x.bits_mut()[run.clone()].iter_mut().zip(&v.bits()[run.clone()]).zip(&bow[run.clone()]);
         for (slot, ((x, &v), &bow)) in columns.enumerate() {
-            let moved = x.saturating_add(way(v, line, bow, TO_LENGTH));
+            let moved = x.saturating_add(mul_add(v, line, bow, BOW_SHIFT, TO_LENGTH));
             *x = moved.clamp(Length::MIN.to_bits(), Length::MAX.to_bits());
             if *x != moved {
                 faults.push(Fault { slot: run.start.saturating_add(slot), bound: Bound::Position });
@@ -146,7 +145,7 @@ fn drift_run(bodies: &mut Bodies, drive: &Drive, run: Range<usize>, line: i64, t
     }
     let columns = angle.bits_mut()[run.clone()].iter_mut().zip(&omega.bits()[run.clone()]).zip(&bow_turn[run.clone()]);
     for (slot, ((angle, &w), &bow)) in columns.enumerate() {
-        let turned = turn_by(*angle, way(w, turn, bow, TO_ANGLE));
+        let turned = turn_by(*angle, mul_add(w, turn, bow, BOW_SHIFT, TO_ANGLE));
         *angle = turned.0;
         if turned.1 {
             faults.push(Fault { slot: run.start.saturating_add(slot), bound: Bound::Turns });
@@ -215,9 +214,11 @@ fn attract(bodies: &mut Bodies, drive: &mut Drive, faults: &mut Vec<Fault>) {
 /// `v += by`, limited to the format.
 #[inline]
 fn add(v: &mut i64, by: i64, slot: usize, bound: Bound, faults: &mut Vec<Fault>) {
-    let sum = add_sat(*v, by);
-    if v.checked_add(by) != Some(sum) {
+    let (sum, wrapped) = v.overflowing_add(by);
+    if wrapped || sum == i64::MIN {
+        *v = add_sat(*v, by);
         faults.push(Fault { slot, bound });
+    } else {
+        *v = sum;
     }
-    *v = sum;
 }

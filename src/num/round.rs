@@ -80,20 +80,14 @@ pub const fn mul(a: i64, b: i64, shift: u32) -> i64 {
     clamp_i64(round_bounded(a as i128 * b as i128, limited(shift)))
 }
 
-/// `(a·b + c) / 2^shift` with one rounding; `c` carries the fraction bits of the product.
+/// `(a·b + c·2^lift) / 2^shift` with one rounding: `lift` brings `c` to the fraction bits of the product.
 ///
-/// Range: `|c| ≤ 2^125`, larger ones are limited to it; `shift` is 1 … 126. Overflow: saturates at ±`i64::MAX`.
+/// Range: `lift` is 0 … 62, `shift` 1 … 126. Overflow: saturates at ±`i64::MAX`.
 #[inline]
-pub const fn mul_add(a: i64, b: i64, c: i128, shift: u32) -> i64 {
-    const LIMIT: i128 = 1 << 125;
-    let c = if c > LIMIT {
-        LIMIT
-    } else if c < -LIMIT {
-        -LIMIT
-    } else {
-        c
-    };
-    clamp_i64(round_bounded(a as i128 * b as i128 + c, limited(shift)))
+pub const fn mul_add(a: i64, b: i64, c: i64, lift: u32, shift: u32) -> i64 {
+    debug_assert!(lift <= 62, "an addend of 63 bits is lifted to at most 125");
+    let lift = if lift > 62 { 62 } else { lift };
+    clamp_i64(round_bounded(a as i128 * b as i128 + ((c as i128) << lift), limited(shift)))
 }
 
 /// `(ax·bx + ay·by) / 2^shift` with one rounding. Overflow: saturates at ±`i64::MAX`.

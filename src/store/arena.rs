@@ -250,8 +250,16 @@ impl<T: Row> Arena<T> {
         hasher.finish()
     }
 
-    /// Whether the free chain, the counts and the digest agree with the slots; what is wrong, if not.
+    /// Whether the digest is that of the slots, and everything that [`Arena::check_chain`] looks at.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
+        if self.digest != self.sum() {
+            return Err("has a digest that does not fit its slots");
+        }
+        self.check_chain()
+    }
+
+    /// Whether the free chain and the counts agree with the slots; what is wrong, if not.
+    fn check_chain(&self) -> Result<(), &'static str> {
         let live = self.slots.iter().filter(|slot| slot.link == LIVE).count();
         if live != self.chain.live as usize {
             return Err("counts its slots in use wrongly");
@@ -276,9 +284,6 @@ impl<T: Row> Arena<T> {
         if self.slots.iter().any(|slot| slot.link != LIVE && slot.value != T::default()) {
             return Err("has a free slot that is not empty");
         }
-        if self.digest != self.sum() {
-            return Err("has a digest that does not fit its slots");
-        }
         Ok(())
     }
 
@@ -301,7 +306,7 @@ impl<T: Row> Record for Arena<T> {
         let chain = Record::load(reader, field)?;
         let mut arena = Arena { slots: Record::load(reader, field)?, chain, digest: 0 };
         arena.digest = arena.sum();
-        arena.check().map_err(|reason| reader.invalid(offset, field, reason))?;
+        arena.check_chain().map_err(|reason| reader.invalid(offset, field, reason))?;
         Ok(arena)
     }
 

@@ -40,8 +40,8 @@ pub(crate) fn hash_bytes(bytes: &[u8]) -> u64 {
     XxHash3_64::oneshot(bytes)
 }
 
-/// XXH3-64 of what is written, without allocating: exactly that for up to 1024 bytes; longer input is hashed in
-/// blocks of 1024, each seeded with the hash of those before.
+/// XXH3-64 of what is written, without allocating: exactly that for up to 256 bytes; longer input is hashed in
+/// blocks of 256, each seeded with the hash of those before.
 pub(crate) struct Hasher {
     block: [u8; Self::BLOCK],
     used: usize,
@@ -49,7 +49,7 @@ pub(crate) struct Hasher {
 }
 
 impl Hasher {
-    const BLOCK: usize = 1024;
+    const BLOCK: usize = 256;
 
     pub(crate) fn new() -> Self {
         Hasher { block: [0; Self::BLOCK], used: 0, seed: 0 }

@@ -83,7 +83,7 @@ impl Body<'_> {
         let omega = self.angular_velocity().to_bits();
         let arm = |p: Length, c: Length| p.to_bits().saturating_sub(c.to_bits());
         let (rx, ry) = (arm(point.x, center.x), arm(point.y, center.y));
-        let part = |v: Velocity, r: i64| Velocity::from_bits(mul_add(omega, r, i128::from(v.to_bits()) << 32, 32));
+        let part = |v: Velocity, r: i64| Velocity::from_bits(mul_add(omega, r, v.to_bits(), 32, 32));
         Vec2::new(part(velocity.x, ry.saturating_neg()), part(velocity.y, rx))
     }
 
