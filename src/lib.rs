@@ -7,8 +7,8 @@
 //! | module | what |
 //! |---|---|
 //! | [`num`] | quantity types, the one rounding and overflow policy, roots and trigonometry |
-//! | `store` | bytes, field lists, columns, slots with generations |
 //! | [`geom`] | vectors and rotations |
+//! | `store` | bytes, field lists, columns, slots with generations |
 //! | `body` | what bodies and attractors are |
 //! | `motion` | integrators, gravity, damping |
 //! | `world` | the world, its step, its commands |

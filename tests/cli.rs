@@ -174,7 +174,7 @@ fn bad_scenes_are_refused_with_their_place() {
         (top(r#""gravity":[0]"#), "gravity: invalid length 1"),
         (top(r#""gravity":[0,0,0]"#), "gravity: invalid length 3"),
         (top(r#""gravity":["0",0]"#), "gravity[0]: acceleration is expected to be a number"),
-        (top(r#""gravity":[0,1e5]"#), "gravity[1]: acceleration 100000 m/s² is outside ±32768 m/s²"),
+        (top(r#""gravity":[0,1e5]"#), "gravity[1]: acceleration 100000 m/s² is outside ±(32768 − 2⁻⁴⁸) m/s²"),
         (top(r#""gravity":[0,1e999999999999]"#), "gravity[1]: acceleration is not a decimal number"),
         (top(r#""attractors":[{"mu":1}]"#), "attractors[0]: missing field `position`"),
         (
@@ -196,7 +196,7 @@ fn bad_scenes_are_refused_with_their_place() {
         (body(r#""angle":6.2831853072"#), "bodies[1].angle: angle 6.2831853"),
         (body(r#""angle":-0.1"#), "is outside 0 … 2π rad"),
         (body(r#""position":[1000000000.1,0]"#), "bodies[1].position[0]: length 1000000000.1"),
-        (body(r#""velocity":[32768,0]"#), "bodies[1].velocity[0]: velocity 32768 m/s is outside ±32768 m/s"),
+        (body(r#""velocity":[32768,0]"#), "bodies[1].velocity[0]: velocity 32768 m/s is outside ±(32768 − 2⁻⁴⁸) m/s"),
         (body(r#""linear_damping":-1"#), "bodies[1].linear_damping: damping -1 1/s is outside 0 … 1000 1/s"),
         (body(r#""kind":"static","velocity":[1,0]"#), "bodies[1]: a static body has no velocity, only 0 is accepted"),
         (body(r#""kind":"kinematic","force":[1,0]"#), "bodies[1]: a kinematic body has no force, only 0 is accepted"),
@@ -238,7 +238,11 @@ fn a_command_refused_while_running_fails_with_its_place() {
         {"tick":2,"do":{"apply_impulse":{"body":"a","impulse":[40000,0]}}}]}"#;
     let output = run(scene, &["--ticks", "5"]);
     assert_eq!(output.status, 1);
-    assert!(output.err.contains("tick 2: commands[0]: velocity 40000 m/s is outside ±32768 m/s"), "{}", output.err);
+    assert!(
+        output.err.contains("tick 2: commands[0]: velocity 40000 m/s is outside ±(32768 − 2⁻⁴⁸) m/s"),
+        "{}",
+        output.err
+    );
 }
 
 #[test]

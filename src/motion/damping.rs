@@ -23,7 +23,7 @@ impl Decay {
     pub(crate) const NONE: Decay = Decay { exp: 1 << Q, phi1: 1 << Q, phi2: 1 << (Q - 1) };
 
     /// Drag at the rate `damping` over 1/`per_second` s.
-    pub(crate) fn new(damping: Damping, per_second: i64) -> Decay {
+    pub(crate) fn new(damping: Damping, per_second: u32) -> Decay {
         if damping == Damping::ZERO {
             return Decay::NONE;
         }

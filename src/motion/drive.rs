@@ -3,7 +3,7 @@
 
 use super::damping::Decay;
 use super::gravity::Source;
-use super::integrate::{Integrator, Scheme};
+use super::integrate::{Integrator, Stage, stages};
 use super::span::Span;
 use crate::body::{Attractor, Bodies, BodyData};
 use crate::geom::Vec2;
@@ -25,7 +25,7 @@ const BOW_FRAC: u32 = 56;
 /// What brings a bow to the 48 + 63 fraction bits of the product v·T.
 pub(crate) const BOW_SHIFT: u32 = 48 + 63 - BOW_FRAC;
 
-/// A body with damping: its factors over the scheme's span.
+/// A body with damping: its factors over one [`Stage::Glide`] or [`Stage::Decay`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Damped {
     pub(crate) slot: u32,
@@ -40,12 +40,15 @@ pub(crate) struct Damped {
 /// The prepared motion of all bodies. Everything in it is derived.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Drive {
-    pub(crate) scheme: Scheme,
-    pub(crate) span: Span,
-    pub(crate) half: Span,
-    /// Change of vx, vy and ω in one span, 48 fraction bits.
+    /// What a step of the integrator consists of, and how many steps a tick has.
+    pub(crate) stages: Vec<Stage>,
+    pub(crate) steps: u32,
+    /// The span that damping is prepared for: that of a glide, or of a decay.
+    decay_span: u32,
+    /// Per body, for x, y and turning: the change of velocity in a glide; in other schemes the acceleration. 48
+    /// fraction bits.
     pub(crate) kick: [Vec<i64>; 3],
-    /// What acceleration adds to the way in one span: 56 fraction bits, metres and turns. Zero in stepped schemes.
+    /// What acceleration adds to the way in a glide: 56 fraction bits, metres and turns. In other schemes zero.
     pub(crate) bow: [Vec<i64>; 3],
     /// Bodies with damping, by slot.
     pub(crate) damped: Vec<Damped>,
@@ -55,7 +58,7 @@ pub(crate) struct Drive {
     pub(crate) sources: Vec<Source>,
 }
 
-clone_fields!(Drive { scheme, span, half, kick, bow, damped, limited, sources });
+clone_fields!(Drive { stages, steps, decay_span, kick, bow, damped, limited, sources });
 
 /// The constant acceleration of a body in m/s² and rad/s², 48 fraction bits, and whether it had to be limited.
 ///
@@ -99,15 +102,8 @@ impl Drive {
         let heavy = bodies.cold.iter().filter(|(_, data)| data.mu != Mu::ZERO);
         self.sources.extend(heavy.map(|(slot, data)| Source::carried_by(slot, data.mu)));
 
-        self.scheme = match integrator {
-            Integrator::Verlet if self.sources.is_empty() => Scheme::Exact,
-            Integrator::Verlet => Scheme::Leapfrog { substeps },
-            Integrator::SymplecticEuler => Scheme::Euler { substeps },
-        };
-        let steps = if self.scheme == Scheme::Exact { 1 } else { substeps };
-        let per_second = tick_rate.saturating_mul(steps);
-        self.span = Span::new(per_second);
-        self.half = Span::new(per_second.saturating_mul(2));
+        let scheme = stages(integrator, tick_rate, substeps, !self.sources.is_empty());
+        (self.stages, self.steps, self.decay_span) = scheme;
         self.damped.clear();
         self.limited.clear();
         self.grow(bodies.cold.len());
@@ -120,6 +116,11 @@ impl Drive {
         }
     }
 
+    /// The span of a glide for bodies without damping.
+    pub(crate) fn glide_span(&self) -> Span {
+        Span::new(self.decay_span)
+    }
+
     /// Moves the sources that bodies carry to where these are.
     pub(crate) fn follow(&mut self, bodies: &Bodies) {
         for source in &mut self.sources {
@@ -129,20 +130,21 @@ impl Drive {
 
     /// The motion of the body in `slot` from its constant acceleration and its damping.
     pub(crate) fn set(&mut self, slot: usize, data: &BodyData, gravity: Vec2<Acceleration>, push: Option<&Push>) {
-        let Span { line, line2, turn, turn2, per_second } = self.span;
-        let decay_line = Decay::new(data.linear_damping, per_second);
-        let decay_turn = Decay::new(data.angular_damping, per_second);
-        // (v·e + a·T) for exact steps has T·φ₁ and T²·φ₂; in Euler's scheme the kick itself decays.
-        let spans = |decay: &Decay, t: i64, t2: i64| match self.scheme {
-            Scheme::Euler { .. } => (decay.slow(t), 0),
-            Scheme::Leapfrog { .. } => (decay.scale(t, 0).0, 0),
-            Scheme::Exact => decay.scale(t, t2),
+        let decay_line = Decay::new(data.linear_damping, self.decay_span);
+        let decay_turn = Decay::new(data.angular_damping, self.decay_span);
+        let (accelerations, limited) = acceleration(data, gravity, push);
+        let [ax, ay, alpha] = accelerations;
+        let (kicks, bows) = if self.stages == [Stage::Glide] {
+            // v·e + a·T·φ₁ and v·T·φ₁ + a·T²·φ₂.
+            let span = self.glide_span();
+            let squared = span.squared();
+            let (kick_line, bow_line) = decay_line.scale(span.line, squared.line);
+            let (kick_turn, bow_turn) = decay_turn.scale(span.line, squared.turn);
+            let kicks = [mul(ax, kick_line, 63), mul(ay, kick_line, 63), mul(alpha, kick_turn, 63)];
+            (kicks, [mul(ax, bow_line, BOW_SHIFT), mul(ay, bow_line, BOW_SHIFT), mul(alpha, bow_turn, BOW_SHIFT)])
+        } else {
+            (accelerations, [0; 3])
         };
-        let (kick_line, bow_line) = spans(&decay_line, line, line2);
-        let (kick_turn, bow_turn) = spans(&decay_turn, line, turn2);
-        let ([ax, ay, alpha], limited) = acceleration(data, gravity, push);
-        let kicks = [mul(ax, kick_line, 63), mul(ay, kick_line, 63), mul(alpha, kick_turn, 63)];
-        let bows = [mul(ax, bow_line, BOW_SHIFT), mul(ay, bow_line, BOW_SHIFT), mul(alpha, bow_turn, BOW_SHIFT)];
         for (column, kick) in self.kick.iter_mut().zip(kicks) {
             column[slot] = kick;
         }
@@ -160,12 +162,13 @@ impl Drive {
             self.damped.remove(at);
         }
         if decay_line != Decay::NONE || decay_turn != Decay::NONE {
+            let span = self.glide_span();
             let damped = Damped {
                 slot: slot as u32,
                 line: decay_line,
-                line_span: decay_line.scale(line, 0).0,
+                line_span: decay_line.scale(span.line, 0).0,
                 turn: decay_turn,
-                turn_span: decay_turn.scale(turn, 0).0,
+                turn_span: decay_turn.scale(span.turn, 0).0,
             };
             self.damped.insert(at, damped);
         }

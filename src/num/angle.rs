@@ -34,7 +34,9 @@ impl Angle {
         Ok(Angle::from_bits(angle.to_bits() & (TURN - 1)))
     }
 
-    /// An unwrapped angle given in radians, of any size and sign. Rounding: nearest, to 2⁻⁴⁸ turns.
+    /// An unwrapped angle given in radians, of any size and sign.
+    ///
+    /// Error: half a unit of 2⁻⁴⁸ turns, and a quarter more at ±32 768 rad, from the 64 bits of 1/2π.
     pub const fn from_any_radians(radians: Radians) -> Angle {
         // 2^63 · 2^62 fits; the result is below the input.
         Angle::from_bits(round_shift(radians.to_bits() as i128 * TURN_PER_RADIAN_Q64, 64) as i64)

@@ -8,7 +8,7 @@ use super::quantity::{
 };
 use crate::geom::{Rot, Vec2};
 use fixed::FixedI128;
-use fixed::types::extra::U64;
+use fixed::types::extra::{U32, U64};
 
 /// A quantity that converts from and to `f64`.
 pub trait FromF64: Quantity {
@@ -34,8 +34,7 @@ macro_rules! float {
                 match fixed_checked(value) {
                     Some(fixed) => Ok(Self::from_fixed(fixed).checked()?),
                     None => {
-                        let shown = FixedI128::<U64>::saturating_from_num(value);
-                        Err(RangeError::new::<Self>(Decimal { bits: shown.to_bits(), frac: 64 }).into())
+                        Err(RangeError::new::<Self>(beyond(value)).into())
                     }
                 }
             }
@@ -57,6 +56,14 @@ macro_rules! float {
             }
         }
     )*};
+}
+
+/// What a value beyond its format is shown as.
+fn beyond(value: f64) -> Decimal {
+    match FixedI128::<U64>::checked_from_num(value) {
+        Some(shown) => Decimal { bits: shown.to_bits(), frac: 64 },
+        None => Decimal { bits: FixedI128::<U32>::saturating_from_num(value).to_bits(), frac: 32 },
+    }
 }
 
 fn fixed_checked<F: fixed::traits::Fixed>(value: f64) -> Option<F> {

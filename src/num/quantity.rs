@@ -51,7 +51,7 @@ pub struct RangeError {
     pub quantity: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// What was given; limited to ±2⁶³ where it came from beyond the format.
+    /// What was given; limited to ±2⁹⁵ where it came from beyond the format.
     pub value: Decimal,
     /// The accepted range, as the range table of [`num`](crate::num) has it.
     pub accepted: &'static str,
@@ -213,14 +213,13 @@ macro_rules! quantities {
     )*};
 }
 
-/// What a number beyond its format is shown as: itself where 64 whole bits hold it, else their end.
+/// What a number beyond its format is shown as: itself where 96 whole bits hold it, else their end.
 fn beyond(text: &str) -> Decimal {
-    let bits = match FixedI128::<U64>::from_str(text) {
-        Ok(value) => value.to_bits(),
-        Err(_) if text.starts_with('-') => i128::MIN,
-        Err(_) => i128::MAX,
-    };
-    Decimal { bits, frac: 64 }
+    if let Ok(value) = FixedI128::<U64>::from_str(text) {
+        return Decimal { bits: value.to_bits(), frac: 64 };
+    }
+    let end = if text.starts_with('-') { i128::MIN } else { i128::MAX };
+    Decimal { bits: FixedI128::<U32>::from_str(text).map_or(end, FixedI128::to_bits), frac: 32 }
 }
 
 const METRE: i64 = 1 << 32;
@@ -230,19 +229,19 @@ quantities! {
     /// A position coordinate or a length, in metres: `I32F32`, ±1e9, resolution 2.3e-10.
     Length: FixedI64<U32>, i64, 32, "length", "m", "±1000000000", -1_000_000_000 * METRE, 1_000_000_000 * METRE;
     /// A velocity component in m/s: `I16F48`, the whole format.
-    Velocity: FixedI64<U48>, i64, 48, "velocity", "m/s", "±32768", -i64::MAX, i64::MAX;
+    Velocity: FixedI64<U48>, i64, 48, "velocity", "m/s", "±(32768 − 2⁻⁴⁸)", -i64::MAX, i64::MAX;
     /// An angular velocity in rad/s, counter-clockwise positive: `I16F48`, the whole format.
-    AngularVelocity: FixedI64<U48>, i64, 48, "angular velocity", "rad/s", "±32768", -i64::MAX, i64::MAX;
+    AngularVelocity: FixedI64<U48>, i64, 48, "angular velocity", "rad/s", "±(32768 − 2⁻⁴⁸)", -i64::MAX, i64::MAX;
     /// An acceleration component in m/s²: `I16F48`, the whole format.
-    Acceleration: FixedI64<U48>, i64, 48, "acceleration", "m/s²", "±32768", -i64::MAX, i64::MAX;
+    Acceleration: FixedI64<U48>, i64, 48, "acceleration", "m/s²", "±(32768 − 2⁻⁴⁸)", -i64::MAX, i64::MAX;
     /// An orientation in turns, unwrapped: `I16F48`. The low 48 bits are the fraction of a turn, exactly.
-    Angle: FixedI64<U48>, i64, 48, "angle", "turns", "±32768", -i64::MAX, i64::MAX;
+    Angle: FixedI64<U48>, i64, 48, "angle", "turns", "±(32768 − 2⁻⁴⁸)", -i64::MAX, i64::MAX;
     /// An angle in radians, for the edges of the interface only: `I16F48`.
-    Radians: FixedI64<U48>, i64, 48, "angle", "rad", "±32768", -i64::MAX, i64::MAX;
+    Radians: FixedI64<U48>, i64, 48, "angle", "rad", "±(32768 − 2⁻⁴⁸)", -i64::MAX, i64::MAX;
     /// A mass in kg: `I64F64`, 1e-6 … 2.1e9. With 32 fraction bits a body of 10 g would accelerate wrongly by 1e-8.
     Mass: FixedI128<U64>, i128, 64, "mass", "kg", "0.000001 … 2100000000", 18_446_744_073_710, 2_100_000_000 * UNIT_64;
     /// A moment of inertia about the centre of mass in kg m²: `I64F64`, 1e-12 … 1e18.
-    Inertia: FixedI128<U64>, i128, 64, "inertia", "kg m²", "1e-12 … 1e18", 18_446_745, 1_000_000_000_000_000_000 * UNIT_64;
+    Inertia: FixedI128<U64>, i128, 64, "inertia", "kg m²", "1e-12 … 1e18", 18_446_744, 1_000_000_000_000_000_000 * UNIT_64;
     /// A force component in N: `I64F64`, ±1e14.
     Force: FixedI128<U64>, i128, 64, "force", "N", "±1e14", -100_000_000_000_000 * UNIT_64, 100_000_000_000_000 * UNIT_64;
     /// A torque in N m, counter-clockwise positive: `I64F64`, ±1e18.

@@ -35,16 +35,15 @@ pub const fn mul_div(a: i128, b: i128, d: i128) -> i128 {
         let (quotient, remainder) = (low / divisor, low % divisor);
         return signed(negative, quotient + (remainder >= divisor - remainder) as u128);
     }
-    // Restoring division, one bit a round: remainder < divisor holds throughout.
+    // Restoring division, one bit a round: remainder < divisor ≤ 2^127 holds throughout, so doubling it fits.
     let (mut remainder, mut quotient) = (high, 0u128);
     let mut bit = 128;
     while bit > 0 {
         bit -= 1;
-        let carry = remainder >> 127;
         remainder = (remainder << 1) | ((low >> bit) & 1);
         quotient <<= 1;
-        if carry == 1 || remainder >= divisor {
-            remainder = remainder.wrapping_sub(divisor);
+        if remainder >= divisor {
+            remainder -= divisor;
             quotient |= 1;
         }
     }

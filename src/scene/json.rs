@@ -45,14 +45,14 @@ fn six_hundred() -> u64 {
 #[serde(rename_all = "snake_case")]
 pub(super) enum IntegratorJson {
     #[default]
-    Verlet,
+    ForestRuth,
     SymplecticEuler,
 }
 
 impl From<IntegratorJson> for Integrator {
     fn from(integrator: IntegratorJson) -> Self {
         match integrator {
-            IntegratorJson::Verlet => Integrator::Verlet,
+            IntegratorJson::ForestRuth => Integrator::ForestRuth,
             IntegratorJson::SymplecticEuler => Integrator::SymplecticEuler,
         }
     }

@@ -19,7 +19,7 @@
 //! | `tick_rate` | ticks per second, a whole number of 15 … 1000 | – |
 //! | `bodies` | a list of bodies | – |
 //! | `substeps` | 1 … 64 | 4 |
-//! | `integrator` | `"verlet"` or `"symplectic_euler"` | `"verlet"` |
+//! | `integrator` | `"forest_ruth"` or `"symplectic_euler"` | `"forest_ruth"` |
 //! | `gravity` | [x, y] in m/s² | [0, 0] |
 //! | `attractors` | a list of `{ "name", "position", "mu" }`; `name` may be left out | none |
 //! | `commands` | a list of `{ "tick", "do" }` | none |

@@ -25,7 +25,7 @@ record!(WorldDef { tick_rate, substeps, gravity, integrator });
 
 impl Default for WorldDef {
     fn default() -> Self {
-        WorldDef { tick_rate: 60, substeps: 4, gravity: Vec2::default(), integrator: Integrator::Verlet }
+        WorldDef { tick_rate: 60, substeps: 4, gravity: Vec2::default(), integrator: Integrator::ForestRuth }
     }
 }
 
