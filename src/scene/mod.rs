@@ -18,7 +18,7 @@
 //! | `name` | text | – |
 //! | `tick_rate` | ticks per second, a whole number of 15 … 1000 | – |
 //! | `bodies` | a list of bodies | – |
-//! | `substeps` | 1 … 64 | 4 |
+//! | `substeps` | steps per tick of motion that is not exact in one, 1 … 64; four make one fourth-order step | 4 |
 //! | `integrator` | `"forest_ruth"` or `"symplectic_euler"` | `"forest_ruth"` |
 //! | `gravity` | [x, y] in m/s² | [0, 0] |
 //! | `attractors` | a list of `{ "name", "position", "mu" }`; `name` may be left out | none |

@@ -13,7 +13,8 @@ use serde::{Deserialize, Serialize};
 pub struct WorldDef {
     /// Ticks per second, 15 … 1000. A constant of the world, and part of its hash.
     pub tick_rate: u32,
-    /// Substeps per tick, 1 … 64, of motion that is not exact in one step.
+    /// Substeps per tick, 1 … 64, of motion that is not exact in one step. Under attraction, four of them (or what is
+    /// left) make one step of the fourth order.
     pub substeps: u32,
     /// The acceleration of every dynamic body.
     pub gravity: Vec2<Acceleration>,
