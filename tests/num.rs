@@ -13,7 +13,7 @@ use num_oracle::{
 use num_rational::BigRational;
 use proptest::prelude::*;
 use tamias2d::num::{
-    Decimal, Quantity, add_sat, clamp_i64, cross, div, dot, hypot, mul, mul_add, mul_div, round_shift, sqrt,
+    Decimal, Quantity, add_sat, clamp_i64, cross, cross_wide, div, dot, hypot, mul, mul_add, mul_div, round_shift, sqrt,
 };
 use tamias2d::{
     Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Energy, Force, Impulse, Inertia, Length, Mass, Mu,
@@ -64,6 +64,18 @@ proptest! {
         a in any_i64(), b in any_i64(), c in any_i64(), lift in 0u32..=62, shift in 1u32..=126,
     ) {
         prop_assert_eq!(big(mul_add(a, b, c, lift, shift)), product(big(a) * b + (big(c) << lift), shift));
+    }
+
+    #[test]
+    fn cross_wide_rounds_an_exact_difference_once(
+        a in [signed(127), signed(127)], b in [signed(127), signed(127)], shift in 1u32..=127, alike in any::<bool>(),
+    ) {
+        // Also nearly parallel vectors, whose products cancel.
+        let b = if alike { [a[0].saturating_add(b[0] >> 90), a[1].saturating_add(b[1] >> 90)] } else { b };
+        let limit = |v: [i128; 2]| v.map(|x| limited(big(x), 126));
+        let ([ax, ay], [bx, by]) = (limit(a), limit(b));
+        let exact = nearest_away(&ratio(ax * by - ay * bx, power(shift)));
+        prop_assert_eq!(big(cross_wide(a, b, shift)), limited(exact, 127));
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! The table of bodies: hot state in columns, cold data in slots.
 
-use super::def::{BodyData, BodyDef, BodyKind};
+use super::def::{BodyData, BodyDef};
 use crate::geom::Vec2;
-use crate::num::{Angle, AngularVelocity, Length, Velocity};
+use crate::num::{Angle, AngularVelocity, Length, Quantity, Velocity};
 use crate::store::{Arena, BodyId, Column, DecodeError, Diff, Hasher, Reader, Record, Sink};
 
 /// Declares the table from one list of columns: struct, save, load, hash, diff and copy.
@@ -162,12 +162,12 @@ impl Bodies {
                 continue;
             }
             let data = self.cold.value(slot);
-            debug_assert!(data.kind != BodyKind::Static || velocity.is_zero(), "a static body does not move");
-            if self.position(slot).checked().is_err() {
+            let angle = self.angle.get(slot).checked();
+            if self.position(slot).checked().is_err() || angle.is_err() {
                 return Err("has a body outside the world");
             }
-            if data.check(velocity, omega).is_err() {
-                return Err("has a body with a value that its kind does not have");
+            if velocity.checked().is_err() || omega.checked().is_err() || data.check(velocity, omega).is_err() {
+                return Err("has a body with a value that is out of range, or that its kind does not have");
             }
         }
         Ok(())

@@ -60,12 +60,12 @@ pub(crate) struct Drive {
 
 clone_fields!(Drive { stages, steps, decay_span, kick, bow, damped, limited, sources });
 
-/// The constant acceleration of a body in m/s² and rad/s², 48 fraction bits, and whether it had to be limited.
+/// The constant acceleration of a body in m/s² and rad/s², 48 fraction bits, not yet limited to its format.
 ///
 /// Why nothing overflows: quotients have 256-bit numerators and saturate, as the sums do.
-pub(crate) fn acceleration(data: &BodyData, gravity: Vec2<Acceleration>, push: Option<&Push>) -> ([i64; 3], bool) {
+pub(crate) fn acceleration(data: &BodyData, gravity: Vec2<Acceleration>, push: Option<&Push>) -> [i128; 3] {
     if !data.is_dynamic() {
-        return ([0; 3], false);
+        return [0; 3];
     }
     let along = |force: i128, push: Option<i128>, gravity: Acceleration| {
         let force = force.saturating_add(push.unwrap_or(0));
@@ -77,13 +77,11 @@ pub(crate) fn acceleration(data: &BodyData, gravity: Vec2<Acceleration>, push: O
         let torque = data.torque.to_bits().saturating_add(push.map_or(0, |p| p.torque.to_bits()));
         mul_div(torque, 1 << 48, data.inertia.to_bits())
     };
-    let wide = [
+    [
         along(data.force.x.to_bits(), push.map(|p| p.force.x.to_bits()), gravity.x),
         along(data.force.y.to_bits(), push.map(|p| p.force.y.to_bits()), gravity.y),
         alpha,
-    ];
-    let narrow = wide.map(clamp_i64);
-    (narrow, narrow.map(i128::from) != wide)
+    ]
 }
 
 impl Drive {
@@ -132,7 +130,9 @@ impl Drive {
     pub(crate) fn set(&mut self, slot: usize, data: &BodyData, gravity: Vec2<Acceleration>, push: Option<&Push>) {
         let decay_line = Decay::new(data.linear_damping, self.decay_span);
         let decay_turn = Decay::new(data.angular_damping, self.decay_span);
-        let (accelerations, limited) = acceleration(data, gravity, push);
+        let wide = acceleration(data, gravity, push);
+        let accelerations = wide.map(clamp_i64);
+        let limited = accelerations.map(i128::from) != wide;
         let [ax, ay, alpha] = accelerations;
         let (kicks, bows) = if self.stages == [Stage::Glide] {
             // v·e + a·T·φ₁ and v·T·φ₁ + a·T²·φ₂.

@@ -205,13 +205,14 @@ fn drift(bodies: &mut Bodies, drive: &Drive, run: Range<usize>, line: i64, turn:
 /// whether it had to is the second value.
 fn turn_by(angle: i64, by: i64) -> (i64, bool) {
     const TURN: i64 = 1 << 48;
+    const LAST_TURN: i64 = i64::MAX - (TURN - 1);
     match angle.checked_add(by) {
         Some(sum) if sum != i64::MIN => (sum, false),
         _ => {
-            let fraction = angle.wrapping_add(by) & (TURN - 1);
-            // The last turn that the format holds on either side.
-            let whole = if by > 0 { i64::MAX - (TURN - 1) } else { -i64::MAX - 1 + TURN };
-            (whole.saturating_add(fraction), true)
+            // The fraction of the magnitude, so that opposite spins stay opposite.
+            let sum = angle.wrapping_add(by);
+            let magnitude = LAST_TURN | ((if by > 0 { sum } else { sum.wrapping_neg() }) & (TURN - 1));
+            (if by > 0 { magnitude } else { magnitude.saturating_neg() }, true)
         }
     }
 }

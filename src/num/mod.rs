@@ -53,4 +53,4 @@ pub use quantity::{
 pub use root::{hypot, sqrt};
 pub use round::{add_sat, clamp_i64, cross, div, dot, mul, mul_add, round_shift};
 pub use trig::{atan2, sin_cos};
-pub use wide::mul_div;
+pub use wide::{cross_wide, mul_div};

@@ -50,3 +50,49 @@ pub const fn mul_div(a: i128, b: i128, d: i128) -> i128 {
     let up = (remainder >= divisor - remainder) as u128;
     signed(negative, quotient.saturating_add(up))
 }
+
+/// `(ax·by − ay·bx) / 2^shift` with an exact 256-bit difference, rounded to nearest, ties away from zero;
+/// counter-clockwise positive.
+///
+/// Range: operands below 2¹²⁶ in magnitude, larger ones are limited to it; `shift` is 1 … 127, others are limited.
+/// Overflow: saturates at ±`i128::MAX`.
+///
+/// ```
+/// // Both products are beyond 128 bits, their difference is not.
+/// let far = 1 << 100;
+/// assert_eq!(tamias2d::num::cross_wide([far, far], [far, far - 4], 1), -(1 << 101));
+/// ```
+pub const fn cross_wide(a: [i128; 2], b: [i128; 2], shift: u32) -> i128 {
+    let (left_high, left_low) = signed_mul(a[0], b[1]);
+    let (right_high, right_low) = signed_mul(a[1], b[0]);
+    // Two's complement of 256 bits; each product is below 2^252, so their difference fits.
+    let (low, borrow) = left_low.overflowing_sub(right_low);
+    let high = left_high.wrapping_sub(right_high).wrapping_sub(borrow as u128);
+    let negative = (high as i128) < 0;
+    let (high, low) = if negative { negate(high, low) } else { (high, low) };
+    let shift = if shift < 1 {
+        1
+    } else if shift > 127 {
+        127
+    } else {
+        shift
+    };
+    let up = (low >> (shift - 1)) & 1;
+    if high >> (shift - 1) != 0 {
+        return signed(negative, u128::MAX);
+    }
+    signed(negative, ((high << (128 - shift)) | (low >> shift)).saturating_add(up))
+}
+
+/// `a·b` in two's complement of 256 bits, of operands limited to magnitudes below 2¹²⁶.
+const fn signed_mul(a: i128, b: i128) -> (u128, u128) {
+    const LIMIT: u128 = (1 << 126) - 1;
+    let (ua, ub) = (a.unsigned_abs(), b.unsigned_abs());
+    let (high, low) = widening_mul(if ua > LIMIT { LIMIT } else { ua }, if ub > LIMIT { LIMIT } else { ub });
+    if (a < 0) != (b < 0) { negate(high, low) } else { (high, low) }
+}
+
+/// The negative in two's complement of 256 bits.
+const fn negate(high: u128, low: u128) -> (u128, u128) {
+    ((!high).wrapping_add((low == 0) as u128), low.wrapping_neg())
+}

@@ -104,9 +104,8 @@ macro_rules! quantities {
             }
 
             fn load(reader: &mut Reader<'_>, field: &'static str) -> Result<Self, DecodeError> {
-                let offset = reader.offset();
-                let value = Self::from_bits(reader.take(field)?);
-                value.checked().map_err(|_| reader.invalid(offset, field, "is outside its accepted range"))
+                // Ranges are for the table that knows whether the value is in use: a free slot has mass 0.
+                reader.take(field).map(Self::from_bits)
             }
 
             fn diff(&self, other: &Self, diff: &mut Diff) {

@@ -8,7 +8,7 @@ use crate::geom::Vec2;
 use crate::motion::{Push, acceleration};
 use crate::num::{
     Acceleration, AngularImpulse, AngularVelocity, Damping, Decimal, Force, Impulse, Length, Mu, Quantity, RangeError,
-    Torque, Velocity, mul_div,
+    Torque, Velocity, clamp_i64, cross_wide, mul_div,
 };
 use crate::store::{Arena, AttractorId, BodyId};
 
@@ -101,8 +101,18 @@ impl Commands for World {
 
 /// That a body's own force and torque do not ask for more than the format of acceleration.
 fn check_acceleration(data: &BodyData, push: Option<&Push>) -> Result<(), RangeError> {
-    let (_, limited) = acceleration(data, Vec2::default(), push);
-    if limited { Err(RangeError::new::<Acceleration>(Decimal { bits: i128::MAX, frac: 64 })) } else { Ok(()) }
+    let [x, y, turn] = acceleration(data, Vec2::default(), push);
+    for (bits, quantity, unit) in [
+        (x, Acceleration::NAME, Acceleration::UNIT),
+        (y, Acceleration::NAME, Acceleration::UNIT),
+        (turn, "angular acceleration", "rad/s²"),
+    ] {
+        if i128::from(clamp_i64(bits)) != bits {
+            let value = Decimal { bits, frac: Acceleration::FRAC };
+            return Err(RangeError { quantity, unit, value, accepted: Acceleration::ACCEPTED });
+        }
+    }
+    Ok(())
 }
 
 /// A sum that must stay in its quantity's range.
@@ -232,7 +242,7 @@ impl World {
         let center = self.bodies.position(slot);
         let arm = |p: Length, c: Length| i128::from(p.to_bits()).saturating_sub(c.to_bits().into());
         let (rx, ry) = (arm(point.x, center.x), arm(point.y, center.y));
-        let bits = mul_div(rx, y, 1 << 32).saturating_sub(mul_div(ry, x, 1 << 32));
+        let bits = cross_wide([rx, ry], [x, y], 32);
         if bits < Q::MIN.wide_bits() || bits > Q::MAX.wide_bits() {
             return Err(RangeError::new::<Q>(Decimal { bits, frac: 64 }));
         }

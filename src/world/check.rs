@@ -2,6 +2,7 @@
 
 use crate::World;
 use crate::motion::Drive;
+use crate::num::Quantity;
 
 impl World {
     /// Whether every invariant holds: free slots are empty and chained, columns are as long as their slots, values
@@ -35,14 +36,19 @@ impl World {
     /// What is left to check of a world whose tables were read and are sound in themselves: the configuration, and
     /// the lists that refer to bodies. The first broken invariant, in words.
     pub(crate) fn check_lists(&self) -> Result<(), String> {
-        let World { config, bodies, pushes, status, .. } = self;
+        let World { config, bodies, attractors, pushes, status, .. } = self;
         config.check().map_err(|error| error.to_string())?;
         status.check().map_err(|reason| format!("the table of status entries {reason}"))?;
+        for (_, attractor) in attractors.iter() {
+            attractor.checked().map_err(|error| error.to_string())?;
+        }
         if !pushes.is_sorted_by(|a, b| a.slot < b.slot) {
             return Err("the forces of this tick are not sorted by body".into());
         }
         for push in pushes {
             let slot = push.slot as usize;
+            push.force.checked().map_err(|error| error.to_string())?;
+            push.torque.checked().map_err(|error| error.to_string())?;
             if bodies.id(slot).is_none() || !bodies.cold.value(slot).is_dynamic() {
                 return Err(format!("a force of this tick acts on slot {slot}, which holds no dynamic body"));
             }
