@@ -1,14 +1,7 @@
 //! Saving, loading, hashing and comparing worlds.
 //!
-//! # A saved world, byte by byte
-//!
-//! | bytes | what |
-//! |---|---|
-//! | 8 | `TAMIAS-W` |
-//! | 4 | format version, `u32`: 1 |
-//! | 4 | arithmetic law, `u32`: 1 |
-//! | … | the state: configuration, tick, bodies, attractors, forces of this tick, status; values as the codec lays them out |
-//! | 8 | `u64`: the hash of that state |
+//! A save is a magic, the format version and the arithmetic law, the state by its field lists, and the state's hash;
+//! `replays/FORMAT.md` has all of it byte by byte.
 
 use crate::World;
 use crate::store::{DecodeError, Diff, Difference, Hasher, Reader, Record, put};

@@ -215,7 +215,7 @@ fn wrong_kind(scene: &Scene) -> Table {
     {
         let of = || BodyDef { kind, ..BodyDef::default() };
         let mut no = |quantity: &str, commands: Vec<Command>| {
-            let error = format!("a {text} body has no {quantity}, only 0 is accepted");
+            let error = format!("a {text} body has no {quantity}");
             table.extend(commands.into_iter().map(|command| (command, error.clone())));
         };
         let (force, torque) = (newtons(0.0, 1.0), Torque::from_bits(1));
@@ -264,7 +264,7 @@ fn wrong_kind(scene: &Scene) -> Table {
     let body = scene.fixed;
     let of = || BodyDef { fixed_rotation: true, ..BodyDef::default() };
     let mut no = |quantity: &str, commands: Vec<Command>| {
-        let error = format!("a body with fixed rotation has no {quantity}, only 0 is accepted");
+        let error = format!("a body with fixed rotation has no {quantity}");
         table.extend(commands.into_iter().map(|command| (command, error.clone())));
     };
     let (torque, angular_velocity) = (num("1"), AngularVelocity::from_bits(1));

@@ -99,14 +99,14 @@ record!(BodyDef {
 pub enum BodyError {
     /// Outside the quantity's accepted range.
     Range(RangeError),
-    /// Only another kind of body has it.
+    /// Only another kind of body has it; this kind may have 0 where it is a property.
     Kind {
         /// The quantity's name.
         quantity: &'static str,
         /// The body's kind.
         kind: BodyKind,
     },
-    /// A body with fixed rotation has none.
+    /// A body with fixed rotation has none; it may have 0 where it is a property.
     FixedRotation {
         /// The quantity's name.
         quantity: &'static str,
@@ -123,10 +123,10 @@ impl fmt::Display for BodyError {
                     BodyKind::Kinematic => "kinematic",
                     BodyKind::Dynamic => "dynamic",
                 };
-                write!(f, "a {kind} body has no {quantity}, only 0 is accepted")
+                write!(f, "a {kind} body has no {quantity}")
             }
             BodyError::FixedRotation { quantity } => {
-                write!(f, "a body with fixed rotation has no {quantity}, only 0 is accepted")
+                write!(f, "a body with fixed rotation has no {quantity}")
             }
         }
     }

@@ -46,6 +46,7 @@ mod trig;
 mod wide;
 
 pub use decimal::Decimal;
+pub use float::FromF64;
 pub use quantity::{
     Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Energy, Force, Impulse, Inertia, Length, Mass, Mu,
     NumError, Quantity, Radians, RangeError, Torque, Velocity,

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// The most bytes of one [`Command::Input`].
 pub const INPUT_MAX: usize = 65_536;
 
-/// Every change of a world. The methods of [`Commands`] are sugar for these, so a recorder that records commands
+/// Every change of a world. The methods of [`Commands`](crate::Commands) are sugar for these, so a recorder that records commands
 /// misses nothing. A refused command changes nothing.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
