@@ -264,7 +264,7 @@ fn wrong_usage_is_2() {
     ] {
         let output = tamias(&args);
         assert_eq!(output.status, 2, "{args:?}: {}", output.err);
-        assert!(!output.err.is_empty(), "{args:?}");
+        assert_eq!(output.err.lines().count(), 1, "{args:?}: {}", output.err);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::table::rounded;
 use super::{Failure, verify};
+use std::io::Write;
 use std::path::PathBuf;
 use tamias2d::BodyKind;
 
@@ -33,23 +34,26 @@ impl Info {
         let summary = player.inspect().map_err(|error| verify::failure(&self.file, &error))?;
         let (ticks, commands, end) = (summary.ticks, summary.commands, summary.hash);
         let milliseconds = u128::from(ticks) * 1000 / u128::from(rate);
+        let mut out = std::io::stdout().lock();
         if self.json {
-            println!(
+            writeln!(
+                out,
                 "{{\"format\":{version},\"law\":{law},\"tick_rate\":{rate},\"substeps\":{substeps},\"dynamic\":{dynamic},\
                  \"kinematic\":{kinematic},\"static\":{fixed},\"attractors\":{attractors},\"ticks\":{ticks},\
                  \"commands\":{commands},\"first_hash\":\"{start:016x}\",\"last_hash\":\"{end:016x}\"}}"
-            );
+            )?;
             return Ok(());
         }
-        println!("replay      format {version}, arithmetic law {law}");
-        println!("time        {ticks} ticks of 1/{rate} s, {}.{:03} s", milliseconds / 1000, milliseconds % 1000);
-        println!("motion      {:?}, {substeps} substeps", config.integrator);
-        println!("gravity     ({}, {}) m/s²", rounded(config.gravity.x, 6), rounded(config.gravity.y, 6));
-        println!(
+        writeln!(out, "replay      format {version}, arithmetic law {law}")?;
+        writeln!(out, "time        {ticks} ticks of 1/{rate} s, {}.{:03} s", milliseconds / 1000, milliseconds % 1000)?;
+        writeln!(out, "motion      {:?}, {substeps} substeps", config.integrator)?;
+        writeln!(out, "gravity     ({}, {}) m/s²", rounded(config.gravity.x, 6), rounded(config.gravity.y, 6))?;
+        writeln!(
+            out,
             "at start    {dynamic} dynamic, {kinematic} kinematic, {fixed} static bodies, {attractors} attractors"
-        );
-        println!("commands    {commands}");
-        println!("hashes      {start:016x} at tick 0, {end:016x} at the end");
+        )?;
+        writeln!(out, "commands    {commands}")?;
+        writeln!(out, "hashes      {start:016x} at tick 0, {end:016x} at the end")?;
         Ok(())
     }
 }

@@ -59,28 +59,50 @@ impl Failure {
     }
 }
 
+/// Errors of writing to stdout. That its reader has had enough (`| head`) is none: the program ends in silence.
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Self {
+        if error.kind() == std::io::ErrorKind::BrokenPipe {
+            return Failure { status: 0, message: String::new() };
+        }
         Failure::failed(format_args!("cannot write: {error}"))
     }
 }
 
 pub(crate) fn main() -> ExitCode {
-    let cli = Cli::parse();
-    let result = match cli.command {
-        Command::Run(run) => run.execute(),
-        Command::Verify(verify) => verify.execute(),
-        Command::Info(info) => info.execute(),
-        Command::Scenes(scenes) => scenes.execute(),
-        Command::Record(record) => record.execute(),
+    let result = match Cli::try_parse() {
+        Ok(cli) => execute(cli.command),
+        Err(error) if error.use_stderr() => Err(usage(&error)),
+        // Help and version.
+        Err(help) => help.print().map_err(Failure::from),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
+        Err(Failure { status: 0, .. }) => ExitCode::SUCCESS,
         Err(Failure { status, message }) => {
             // One line, whatever the message holds; that stderr is closed is no reason to panic.
             let _ = writeln!(std::io::stderr(), "tamias2d: {}", message.replace('\n', " "));
             ExitCode::from(status)
         }
+    }
+}
+
+/// What the parser has to say, in one line: its own text up to the usage, which `--help` shows in full.
+fn usage(error: &clap::Error) -> Failure {
+    let text = error.to_string();
+    let lines: Vec<&str> = text.lines().take_while(|line| !line.starts_with("Usage")).map(str::trim).collect();
+    let words = lines.join(" ");
+    let words = words.trim().trim_start_matches("error: ");
+    Failure::usage(format_args!("{words}; see `tamias2d --help`"))
+}
+
+fn execute(command: Command) -> Result<(), Failure> {
+    match command {
+        Command::Run(run) => run.execute(),
+        Command::Verify(verify) => verify.execute(),
+        Command::Info(info) => info.execute(),
+        Command::Scenes(scenes) => scenes.execute(),
+        Command::Record(record) => record.execute(),
     }
 }
 

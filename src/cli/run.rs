@@ -15,6 +15,17 @@ use tamias2d::{Commands, World};
 /// radians in [0, 2π), turns (the unwrapped angle), vx and vy in m/s, omega in rad/s. x, y, turns, vx, vy and omega
 /// are printed exactly, with all their digits; time and angle to 15 decimals.
 #[derive(clap::Args)]
+#[command(after_long_help = "\
+A scene:
+  { \"name\": \"tc2\", \"tick_rate\": 60, \"substeps\": 4, \"gravity\": [0, -9.8],
+    \"bodies\": [ { \"name\": \"left\", \"position\": [20, 20], \"velocity\": [0, 5], \"mass\": 10, \"inertia\": 15 },
+                { \"name\": \"floor\", \"kind\": \"static\" } ],
+    \"attractors\": [ { \"position\": [0, 0], \"mu\": 1000 } ],
+    \"commands\": [ { \"tick\": 30, \"do\": { \"apply_impulse\": { \"body\": \"left\", \"impulse\": [0, 5] } } } ] }
+
+Only name, tick_rate and bodies are needed. A body may have: name, kind (dynamic, kinematic, static), position, angle
+(radians in [0, 2π]), velocity, angular_velocity, force, torque, mass, inertia, fixed_rotation, linear_damping,
+angular_damping, mu, user_data, colliders (an empty list in this version). SI units throughout. Other keys are refused.")]
 pub(crate) struct Run {
     /// The scene, a JSON file; - is standard input. See `tamias2d scenes` for examples
     scene: String,
@@ -41,7 +52,11 @@ impl Run {
         let failed = |error| Failure::failed(format_args!("{shown}: {error}"));
         let file = File::create(path).map_err(|error| Failure::usage(format_args!("{shown}: {error}")))?;
         let recorder = Recorder::new(world, BufWriter::new(file)).map_err(failed)?;
-        self.steps(script, recorder)?.finish().map_err(failed)?;
+        let recorder = self.steps(script, recorder).map_err(|failure| match failure.status {
+            0 => Failure::failed(format_args!("{shown}: cut off, because the output was closed")),
+            _ => failure,
+        })?;
+        recorder.finish().map_err(failed)?;
         Ok(())
     }
 
