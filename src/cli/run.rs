@@ -7,7 +7,7 @@ use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 use tamias2d::replay::Recorder;
 use tamias2d::scene::{Scene, Script};
-use tamias2d::{Commands, World};
+use tamias2d::{Commands, StatusEntry, World};
 
 /// Run a scene and print where its bodies are.
 ///
@@ -79,15 +79,16 @@ impl Run {
         }
         bar.finish_and_clear();
         table.finish()?;
-        report_status(&self.scene, stage.world());
+        report_status(&self.scene, stage.world(), &script);
         Ok(stage)
     }
 }
 
 /// Says on stderr what went out of range: the run is good, but the numbers hit a bound.
-fn report_status(scene: &str, world: &World) {
-    for entry in world.status().entries() {
-        let _ = writeln!(std::io::stderr(), "tamias2d: {scene}: {entry}");
+fn report_status(scene: &str, world: &World, script: &Script<'_>) {
+    for StatusEntry { tick, body, bound } in world.status().entries() {
+        let body = script.label(*body);
+        let _ = writeln!(std::io::stderr(), "tamias2d: {scene}: tick {tick}: body {body} was limited in its {bound}");
     }
 }
 
