@@ -18,7 +18,7 @@ pub const LAW: u32 = 1;
 pub struct HashPart {
     /// What it covers.
     pub name: &'static str,
-    /// XXH3-64.
+    /// XXH3-64, of what and how `replays/FORMAT.md` says.
     pub hash: u64,
 }
 

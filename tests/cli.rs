@@ -204,7 +204,24 @@ fn bad_scenes_are_refused_with_their_place() {
         (body(r#""mass":0.000001,"force":[1,0]"#), "bodies[1]: acceleration"),
         (body(r#""colliders":[{"box":[1,1]}]"#), "bodies[1].colliders: this version has no colliders"),
         (body(r#""name":"""#), "bodies[1]: its name must have 1 to 64 characters"),
-        (body(r#""name":"0""#), "bodies[1]: its name is in use already"),
+        (body(r#""name":"0""#), "bodies[1]: its name \"0\" is in use already"),
+        (body(r#""mass":null"#), "bodies[1].mass: mass is expected to be a number in kg"),
+        (body(r#""name":null"#), "bodies[1].name: invalid type: null"),
+        (body(r#""kind":{"static":null}"#), "bodies[1].kind: invalid type: map"),
+        (top(r#""integrator":{"symplectic_euler":null}"#), "integrator: invalid type: map"),
+        (
+            top(r#""commands":[{"tick":0,"do":{}}]"#),
+            "commands[0].do: invalid length 0, expected an object with one command",
+        ),
+        (top(r#""commands":[{"tick":0,"do":{"clear_status":[]}}]"#), "invalid type: sequence, expected an object"),
+        (top(r#""commands":[{"tick":0,"do":{"clear_status":{},"input":{"text":""}}}]"#), "invalid length 2"),
+        (
+            top(r#""commands":[{"tick":0,"do":{"set_force":["a",[1,2]]}}]"#),
+            "invalid type: sequence, expected an object",
+        ),
+        (top(r#""commands":[{"tick":0,"do":{"clear_status":{"x":1}}}]"#), "unknown field `x`"),
+        (body(r#""\u001b[31mred\r\n\u2028":1"#), "unknown field ` [31mred"),
+        (body(&format!(r#""{}":1"#, "k".repeat(5000))), "bodies[1].kkkk"),
         (body(r#""user_data":-1"#), "bodies[1].user_data: invalid value"),
     ];
     for (scene, expected) in cases {
@@ -212,6 +229,7 @@ fn bad_scenes_are_refused_with_their_place() {
         assert_eq!(output.status, 2, "{scene}\n{}", output.err);
         assert!(output.err.contains(expected), "{scene}\nsays {}\nnot {expected}", output.err);
         assert_eq!(output.err.lines().count(), 1, "{}", output.err);
+        assert!(output.err.len() < 4000 && !output.err.trim_end().contains(char::is_control), "{}", output.err);
         assert_eq!(output.out, "", "{scene}");
     }
 }
@@ -319,6 +337,49 @@ fn recorded_runs_verify_and_bad_files_are_named() {
     let value: serde_json::Value = serde_json::from_str(&info.out).expect("JSON");
     assert_eq!((value["ticks"].clone(), value["tick_rate"].clone()), (100.into(), 60.into()));
     assert_eq!(tamias(&["info", shown(&cut)]).status, 1);
+}
+
+#[test]
+fn a_recording_does_not_overwrite_its_scene() {
+    let folder = folder("same");
+    let path = folder.join("scene.json");
+    std::fs::write(&path, TC2).expect("the test's folder");
+    let output = tamias(&["run", shown(&path), "--ticks", "1", "--record", shown(&path)]);
+    assert_eq!(output.status, 2, "{}", output.err);
+    assert_eq!(std::fs::read_to_string(&path).expect("still there"), TC2);
+}
+
+#[test]
+fn verify_raises_its_alarm_even_when_nobody_reads_its_output() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_tamias2d"))
+        .args(["verify", "--hashes", "replays", "Cargo.toml"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("the program ends");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("Cargo.toml: not a tamias2d replay"));
+}
+
+#[test]
+fn an_endless_scene_is_refused() {
+    if Path::new("/dev/zero").exists() {
+        let output = tamias(&["run", "/dev/zero", "--ticks", "1"]);
+        assert_eq!(output.status, 2);
+        assert!(output.err.contains("a scene of more than 268435456 bytes"), "{}", output.err);
+    }
+}
+
+#[test]
+fn a_body_that_is_gone_is_named_as_the_scene_names_it() {
+    let scene = r#"{"name":"n","tick_rate":60,"bodies":[{"name":"a"}],"commands":[
+        {"tick":0,"do":{"destroy_body":{"body":"a"}}},{"tick":1,"do":{"set_mu":{"body":"a","mu":1}}}]}"#;
+    let output = run(scene, &["--ticks", "5"]);
+    assert_eq!(output.status, 1);
+    assert!(output.err.contains("commands[1]: there is no body \"a\" any more"), "{}", output.err);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use common::{
     Rng, Storm, ULP_PHI, ULP_V, ULP_X, acc, at, close, close2, newton_seconds, newtons, num, omega, phi, position, run,
     vel, velocity, world,
 };
-use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_assert, prop_assert_eq, prop_oneof, proptest};
+use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_assert_eq, prop_oneof, proptest};
 use tamias2d::{
     Angle, AngularVelocity, Attractor, BodyDef, BodyId, BodyKind, Bound, Command, Commands, Damping, Inertia,
     Integrator, Length, Mass, Radians, StatusEntry, Torque, Vec2, Velocity, World, WorldDef,
@@ -1039,7 +1039,8 @@ proptest! {
             }
             prop_assert_eq!(one.status(), other.status());
         }
-        prop_assert!(one.check().is_ok() && other.check().is_ok());
+        prop_assert_eq!(one.check(), Ok(()));
+        prop_assert_eq!(other.check(), Ok(()));
     }
 
     /// Nothing but differences of positions enters the motion: far from the origin a scene has the same bits.

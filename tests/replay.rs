@@ -203,7 +203,7 @@ fn no_command_is_missed() {
     let mut player = Player::new(file.as_slice()).expect("a replay");
     for command in &commands {
         player.step().expect("it plays").expect("a tick");
-        assert_eq!(player.commands(), std::slice::from_ref(command));
+        assert_eq!(player.commands().collect::<Vec<_>>(), std::slice::from_ref(command));
     }
     assert_eq!(player.world().hash(), hash);
     let count = commands.len() as u64;
@@ -217,9 +217,9 @@ fn no_command_is_missed() {
     let file = game.finish().expect("it can be written");
     let mut player = Player::new(file.as_slice()).expect("a replay");
     player.step().expect("it plays");
-    assert_eq!(player.commands(), commands);
+    assert_eq!(player.commands().collect::<Vec<_>>(), commands);
     assert_eq!(player.step().expect("it plays"), None);
-    assert_eq!(player.commands(), [], "the end has no commands");
+    assert_eq!(player.commands().count(), 0, "the end has no commands");
 }
 
 #[test]
@@ -258,7 +258,7 @@ fn the_methods_are_recorded_as_the_commands_are() {
     let file = game.finish().expect("it can be written");
     let mut player = Player::new(file.as_slice()).expect("a replay");
     player.step().expect("it plays");
-    assert_eq!(player.commands(), one_of_each());
+    assert_eq!(player.commands().collect::<Vec<_>>(), one_of_each());
 }
 
 #[test]
@@ -278,9 +278,9 @@ fn refused_commands_are_not_recorded() {
     let mut player = Player::new(file.as_slice()).expect("a replay");
     player.step().expect("it plays");
     let set = |user_data| Command::SetUserData { body: ONE, user_data };
-    assert_eq!(player.commands(), [set(5), set(6)]);
+    assert_eq!(player.commands().collect::<Vec<_>>(), [set(5), set(6)]);
     player.step().expect("it plays");
-    assert_eq!(player.commands(), []);
+    assert_eq!(player.commands().count(), 0);
     assert_eq!(verify(&file).expect("it plays").commands, 2);
 }
 
@@ -301,13 +301,13 @@ fn input_comes_back_at_its_tick() {
     for tick in 0..50 {
         player.step().expect("it plays").expect("a tick");
         if tick % 3 == 0 {
-            assert_eq!(player.commands(), [Command::Input { bytes: input(tick) }]);
+            assert_eq!(player.commands().collect::<Vec<_>>(), [Command::Input { bytes: input(tick) }]);
         } else {
-            assert_eq!(player.commands(), []);
+            assert_eq!(player.commands().count(), 0);
         }
     }
     player.step().expect("it plays").expect("a tick");
-    assert_eq!(player.commands(), [Command::Input { bytes: vec![7; 65_536] }]);
+    assert_eq!(player.commands().collect::<Vec<_>>(), [Command::Input { bytes: vec![7; 65_536] }]);
 }
 
 #[test]

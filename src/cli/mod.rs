@@ -8,7 +8,7 @@ mod verify;
 
 use clap::{Parser, Subcommand};
 use std::fmt;
-use std::io::{IsTerminal, Write};
+use std::io::{IsTerminal, Read, Write};
 use std::process::ExitCode;
 
 /// Deterministic fixed-point 2D physics: run scenes, record and verify replays.
@@ -80,19 +80,36 @@ pub(crate) fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure { status: 0, .. }) => ExitCode::SUCCESS,
         Err(Failure { status, message }) => {
-            // One line, whatever the message holds; that stderr is closed is no reason to panic.
-            let _ = writeln!(std::io::stderr(), "tamias2d: {}", message.replace('\n', " "));
+            say(&message);
             ExitCode::from(status)
         }
     }
 }
 
+/// One line on stderr, whatever the message holds: line ends, terminal escapes and endless text of a hostile file too.
+pub(crate) fn say(message: &str) {
+    const LONGEST: usize = 1000;
+    let unsafe_for_a_line = |c: char| c.is_control() || matches!(c, '\u{2028}' | '\u{2029}');
+    let line: String = message.chars().take(LONGEST).map(|c| if unsafe_for_a_line(c) { ' ' } else { c }).collect();
+    let rest = if message.chars().nth(LONGEST).is_some() { " …" } else { "" };
+    // That stderr is closed is no reason to panic.
+    let _ = writeln!(std::io::stderr(), "tamias2d: {line}{rest}");
+}
+
 /// What the parser has to say, in one line: its own text up to the usage, which `--help` shows in full.
 fn usage(error: &clap::Error) -> Failure {
+    if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        return Failure::usage("a command is missing: run, verify, info, scenes or record; see `tamias2d --help`");
+    }
     let text = error.to_string();
-    let lines: Vec<&str> = text.lines().take_while(|line| !line.starts_with("Usage")).map(str::trim).collect();
-    let words = lines.join(" ");
-    let words = words.trim().trim_start_matches("error: ");
+    let lines: Vec<&str> = text
+        .lines()
+        .take_while(|line| !line.starts_with("Usage") && !line.starts_with("For more"))
+        .map(str::trim)
+        .collect();
+    let lines: Vec<&str> = lines.into_iter().filter(|line| !line.is_empty()).collect();
+    let words = lines.join("; ");
+    let words = words.trim_start_matches("error: ").trim_end_matches("; ");
     Failure::usage(format_args!("{words}; see `tamias2d --help`"))
 }
 
@@ -116,10 +133,23 @@ pub(crate) fn progress(length: u64, unit: &str) -> indicatif::ProgressBar {
     indicatif::ProgressBar::new(length).with_style(style)
 }
 
+/// The longest scene file that is read, in bytes: 10⁵ bodies with all their keys take a fifth of it.
+const SCENE_MAX: u64 = 256 << 20;
+
 /// Reads a scene from a file, or from standard input for `-`.
 pub(crate) fn read_scene(path: &str) -> Result<tamias2d::scene::Scene, Failure> {
-    let text = if path == "-" { std::io::read_to_string(std::io::stdin()) } else { std::fs::read_to_string(path) };
-    let text = text.map_err(|error| Failure::usage(format_args!("{path}: {error}")))?;
+    let refused = |error: &dyn fmt::Display| Failure::usage(format_args!("{path}: {error}"));
+    let mut bytes = Vec::new();
+    let read = if path == "-" {
+        std::io::stdin().take(SCENE_MAX + 1).read_to_end(&mut bytes)
+    } else {
+        std::fs::File::open(path).and_then(|file| file.take(SCENE_MAX + 1).read_to_end(&mut bytes))
+    };
+    read.map_err(|error| refused(&error))?;
+    if bytes.len() as u64 > SCENE_MAX {
+        return Err(refused(&format_args!("a scene of more than {SCENE_MAX} bytes")));
+    }
+    let text = String::from_utf8(bytes).map_err(|error| refused(&error.utf8_error()))?;
     tamias2d::scene::Scene::parse(&text).map_err(|error| Failure::usage(format_args!("{path}: {error}")))
 }
 

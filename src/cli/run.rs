@@ -1,7 +1,7 @@
 //! `tamias2d run`
 
 use super::table::{Format, Table};
-use super::{Failure, progress, read_scene};
+use super::{Failure, progress, read_scene, say};
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::PathBuf;
@@ -50,6 +50,12 @@ impl Run {
         let Some(path) = &self.record else { return self.steps(script, world).map(drop) };
         let shown = path.display();
         let failed = |error| Failure::failed(format_args!("{shown}: {error}"));
+        // Creating the file would empty the scene before anybody noticed.
+        if let (Ok(scene), Ok(replay)) = (std::fs::canonicalize(&self.scene), std::fs::canonicalize(path)) {
+            if scene == replay {
+                return Err(Failure::usage(format_args!("{shown}: is the scene itself")));
+            }
+        }
         let file = File::create(path).map_err(|error| Failure::usage(format_args!("{shown}: {error}")))?;
         let recorder = Recorder::new(world, BufWriter::new(file)).map_err(failed)?;
         let recorder = self.steps(script, recorder).map_err(|failure| match failure.status {
@@ -74,6 +80,8 @@ impl Run {
                 for body in stage.world().bodies() {
                     table.row(tick, script.label(body.id()), &body)?;
                 }
+            }
+            if tick % 1024 == 0 {
                 bar.set_position(tick);
             }
         }
@@ -88,7 +96,7 @@ impl Run {
 fn report_status(scene: &str, world: &World, script: &Script<'_>) {
     for StatusEntry { tick, body, bound } in world.status().entries() {
         let body = script.label(*body);
-        let _ = writeln!(std::io::stderr(), "tamias2d: {scene}: tick {tick}: body {body} was limited in its {bound}");
+        say(&format!("{scene}: tick {tick}: body {body} was limited in its {bound}"));
     }
 }
 

@@ -1,6 +1,6 @@
 //! `tamias2d verify`
 
-use super::{Failure, progress, quoted};
+use super::{Failure, progress, quoted, say};
 use std::fs::File;
 use std::io::{BufReader, Read, Write};
 use std::path::{Path, PathBuf};
@@ -40,7 +40,7 @@ impl Verify {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let mut files = Vec::new();
         for path in &self.paths {
-            collect(path, &mut files)?;
+            collect(path, &mut files);
         }
         if files.is_empty() {
             return Err(Failure::usage("there is no *.replay file in what was given"));
@@ -63,12 +63,10 @@ impl Verify {
         bar.finish_and_clear();
         let mut results = results.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
         results.sort_by(|a, b| a.path.cmp(&b.path));
-        if self.json {
-            print_json(&results)?
-        } else {
-            self.print(&results)?
-        }
-        conclude(&results)
+        // That nobody reads the output to its end must not silence the alarm.
+        let printed = if self.json { print_json(&results) } else { self.print(&results) };
+        conclude(&results)?;
+        Ok(printed?)
     }
 
     fn verify(&self, path: &Path, bar: &indicatif::ProgressBar) -> Verified {
@@ -107,26 +105,22 @@ impl Verify {
     }
 }
 
-/// The replays that a path stands for: itself, or those in the folder, sorted by name.
-fn collect(path: &Path, files: &mut Vec<PathBuf>) -> Result<(), Failure> {
-    let unreadable = |error| Failure::usage(format_args!("{}: {error}", path.display()));
-    if !path.metadata().map_err(unreadable)?.is_dir() {
-        files.push(path.into());
-        return Ok(());
+/// The replays that a path stands for: itself, or those in the folder and its folders, sorted by name. What cannot be
+/// read is kept: verifying it will say why. Links to folders are not followed, they may lead in circles.
+fn collect(path: &Path, files: &mut Vec<PathBuf>) {
+    if !path.is_dir() {
+        return files.push(path.into());
     }
-    let mut entries = Vec::new();
-    for entry in path.read_dir().map_err(unreadable)? {
-        entries.push(entry.map_err(unreadable)?.path());
-    }
+    let Ok(entries) = path.read_dir() else { return files.push(path.into()) };
+    let mut entries: Vec<PathBuf> = entries.filter_map(|entry| entry.ok().map(|entry| entry.path())).collect();
     entries.sort();
     for entry in entries {
-        if entry.is_dir() {
-            collect(&entry, files)?;
-        } else if entry.extension().is_some_and(|extension| extension == "replay") {
+        if entry.is_dir() && !entry.is_symlink() {
+            collect(&entry, files);
+        } else if !entry.is_dir() && entry.extension().is_some_and(|extension| extension == "replay") {
             files.push(entry);
         }
     }
-    Ok(())
 }
 
 fn speed(ticks: u64, time: Duration) -> u64 {
@@ -189,7 +183,7 @@ fn conclude(results: &[Verified]) -> Result<(), Failure> {
     let Some(worst) = bad.iter().map(|(_, status)| *status).max() else { return Ok(()) };
     let last = bad.pop().map(|(message, _)| message).unwrap_or_default();
     for (message, _) in bad {
-        let _ = writeln!(std::io::stderr(), "tamias2d: {message}");
+        say(&message);
     }
     Err(if worst == 1 { Failure::failed(last) } else { Failure::usage(last) })
 }

@@ -7,7 +7,7 @@ use super::integrate::{Integrator, Stage, stages};
 use super::span::Span;
 use crate::body::{Attractor, Bodies, BodyData};
 use crate::geom::Vec2;
-use crate::num::{Acceleration, Force, Mu, Torque, clamp_i64, mul, mul_div};
+use crate::num::{Acceleration, Damping, Force, Mu, Torque, clamp_i64, mul, mul_div};
 use crate::store::{Arena, clone_fields, record};
 
 /// A force and a torque that act on a body for one tick.
@@ -29,6 +29,8 @@ pub(crate) const BOW_SHIFT: u32 = 48 + 63 - BOW_FRAC;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Damped {
     pub(crate) slot: u32,
+    /// The rates that the factors are for.
+    rates: [Damping; 2],
     /// Along a line, and the multiplier T·φ₁ that takes a velocity to a way.
     pub(crate) line: Decay,
     pub(crate) line_span: i64,
@@ -54,11 +56,13 @@ pub(crate) struct Drive {
     pub(crate) damped: Vec<Damped>,
     /// Bodies whose constant acceleration had to be limited to its format, by slot.
     pub(crate) limited: Vec<u32>,
+    /// Where in the list of this tick's forces a body's are, by slot; `u32::MAX` for none.
+    pub(crate) push_at: Vec<u32>,
     /// What pulls: attractors by slot, then bodies by slot. Their order is the order of summation.
     pub(crate) sources: Vec<Source>,
 }
 
-clone_fields!(Drive { stages, steps, decay_span, kick, bow, damped, limited, sources });
+clone_fields!(Drive { stages, steps, decay_span, kick, bow, damped, limited, push_at, sources });
 
 /// The constant acceleration of a body in m/s² and rad/s², 48 fraction bits, not yet limited to its format.
 ///
@@ -96,9 +100,9 @@ impl Drive {
     ) {
         self.sources.clear();
         let fixed = attractors.iter().filter(|(_, a)| a.mu != Mu::ZERO);
-        self.sources.extend(fixed.map(|(_, a)| Source::at(a.position, a.mu)));
+        self.sources.extend(fixed.map(|(slot, a)| Source::fixed(slot, *a)));
         let heavy = bodies.cold.iter().filter(|(_, data)| data.mu != Mu::ZERO);
-        self.sources.extend(heavy.map(|(slot, data)| Source::carried_by(slot, data.mu)));
+        self.sources.extend(heavy.map(|(slot, data)| Source::carried(slot, data.mu)));
 
         let scheme = stages(integrator, tick_rate, substeps, !self.sources.is_empty());
         (self.stages, self.steps, self.decay_span) = scheme;
@@ -112,11 +116,40 @@ impl Drive {
         for column in self.kick.iter_mut().chain(&mut self.bow) {
             column.resize(slots, 0);
         }
+        self.push_at.resize(slots, u32::MAX);
+    }
+
+    /// Renews where each body's forces are in the list.
+    pub(crate) fn index_pushes(&mut self, pushes: &[Push]) {
+        self.push_at.fill(u32::MAX);
+        for (at, push) in pushes.iter().enumerate() {
+            self.push_at[push.slot as usize] = at as u32;
+        }
+    }
+
+    /// The forces of this tick on a body.
+    pub(crate) fn push_of<'p>(&self, slot: usize, pushes: &'p [Push]) -> Option<&'p Push> {
+        pushes.get(*self.push_at.get(slot)? as usize)
     }
 
     /// The span of a glide for bodies without damping.
     pub(crate) fn glide_span(&self) -> Span {
         Span::new(self.decay_span)
+    }
+
+    /// Puts a source in its place, in that of another by the same carrier, or takes that one out if its μ is 0.
+    /// Whether there are sources now and were none, or the other way round: then the scheme is another one.
+    pub(crate) fn set_source(&mut self, source: Source) -> bool {
+        let had = self.sources.is_empty();
+        let at = self.sources.partition_point(|other| other.order() < source.order());
+        let present = self.sources.get(at).is_some_and(|other| other.order() == source.order());
+        match (present, source.pulls()) {
+            (true, true) => self.sources[at] = source,
+            (true, false) => drop(self.sources.remove(at)),
+            (false, true) => self.sources.insert(at, source),
+            (false, false) => {}
+        }
+        had != self.sources.is_empty()
     }
 
     /// Moves the sources that bodies carry to where these are.
@@ -128,8 +161,7 @@ impl Drive {
 
     /// The motion of the body in `slot` from its constant acceleration and its damping.
     pub(crate) fn set(&mut self, slot: usize, data: &BodyData, gravity: Vec2<Acceleration>, push: Option<&Push>) {
-        let decay_line = Decay::new(data.linear_damping, self.decay_span);
-        let decay_turn = Decay::new(data.angular_damping, self.decay_span);
+        let Damped { line: decay_line, turn: decay_turn, .. } = self.damping(slot, data);
         let wide = acceleration(data, gravity, push);
         let accelerations = wide.map(clamp_i64);
         let limited = accelerations.map(i128::from) != wide;
@@ -157,20 +189,25 @@ impl Drive {
             (false, true) => self.limited.insert(at, slot as u32),
             _ => {}
         }
+    }
+
+    /// The factors of a body's damping; those of bodies that have some are kept until their rates change.
+    fn damping(&mut self, slot: usize, data: &BodyData) -> Damped {
+        let rates = [data.linear_damping, data.angular_damping];
         let at = self.damped.partition_point(|d| (d.slot as usize) < slot);
-        if self.damped.get(at).is_some_and(|d| d.slot as usize == slot) {
-            self.damped.remove(at);
+        let kept = self.damped.get(at).filter(|d| d.slot as usize == slot).copied();
+        match kept {
+            Some(damped) if damped.rates == rates => return damped,
+            Some(_) => drop(self.damped.remove(at)),
+            None => {}
         }
-        if decay_line != Decay::NONE || decay_turn != Decay::NONE {
-            let span = self.glide_span();
-            let damped = Damped {
-                slot: slot as u32,
-                line: decay_line,
-                line_span: decay_line.scale(span.line, 0).0,
-                turn: decay_turn,
-                turn_span: decay_turn.scale(span.turn, 0).0,
-            };
+        let span = self.glide_span();
+        let [line, turn] = rates.map(|rate| Decay::new(rate, self.decay_span));
+        let (line_span, turn_span) = (line.scale(span.line, 0).0, turn.scale(span.turn, 0).0);
+        let damped = Damped { slot: slot as u32, rates, line, line_span, turn, turn_span };
+        if rates != [Damping::ZERO; 2] {
             self.damped.insert(at, damped);
         }
+        damped
     }
 }

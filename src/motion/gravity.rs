@@ -7,44 +7,63 @@
 //! | 1/d, 1/d³, μ | 64-bit mantissas, highest bit kept up, with an exponent | relative error below 2⁻⁶⁰ |
 //! | a | `i128`, 48 fraction bits | saturates at ±2¹²⁶, so that sums do not wrap; the caller limits the sum |
 
-use crate::body::Bodies;
+use crate::body::{Attractor, Bodies};
 use crate::geom::Vec2;
 use crate::num::{Length, Mu, round_shift};
 
-/// The slot of a source that is no body.
-const NOWHERE: u32 = u32::MAX;
 /// Where one source's pull saturates: far above what the sum may be, far below where sums of 2²⁵ pulls wrap.
 const PULL_MAX: i128 = 1 << 100;
+
+/// What a source belongs to. The order is that of summation: attractors by slot, then bodies by slot.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub(crate) enum Carrier {
+    Attractor(u32),
+    Body(u32),
+}
 
 /// Something that pulls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Source {
     x: i64,
     y: i64,
-    /// The body that carries it, or `NOWHERE`.
-    slot: u32,
+    /// What it belongs to.
+    carrier: Carrier,
     /// μ = mantissa·2^(8 − zeros), the mantissa's highest bit set.
     mantissa: u64,
     zeros: u32,
 }
 
 impl Source {
-    /// A fixed source; μ is not 0.
-    pub(crate) fn at(position: Vec2<Length>, mu: Mu) -> Source {
+    fn new(carrier: Carrier, position: Vec2<Length>, mu: Mu) -> Source {
         let zeros = mu.to_bits().leading_zeros();
         let mantissa = (mu.to_bits() << (zeros & 127) >> 64) as u64;
-        Source { x: position.x.to_bits(), y: position.y.to_bits(), slot: NOWHERE, mantissa, zeros }
+        Source { x: position.x.to_bits(), y: position.y.to_bits(), carrier, mantissa, zeros }
     }
 
-    /// A source that a body carries; μ is not 0.
-    pub(crate) fn carried_by(slot: usize, mu: Mu) -> Source {
-        Source { slot: slot as u32, ..Source::at(Vec2::default(), mu) }
+    /// The attractor in a slot.
+    pub(crate) fn fixed(slot: usize, attractor: Attractor) -> Source {
+        Source::new(Carrier::Attractor(slot as u32), attractor.position, attractor.mu)
+    }
+
+    /// A source that a body carries; where, [`Source::follow`] says.
+    pub(crate) fn carried(slot: usize, mu: Mu) -> Source {
+        Source::new(Carrier::Body(slot as u32), Vec2::default(), mu)
+    }
+
+    /// Its place among the sources.
+    pub(crate) fn order(&self) -> Carrier {
+        self.carrier
+    }
+
+    /// Whether μ is not 0.
+    pub(crate) fn pulls(&self) -> bool {
+        self.mantissa != 0
     }
 
     /// Moves a carried source to where its body is.
     pub(crate) fn follow(&mut self, bodies: &Bodies) {
-        if self.slot != NOWHERE {
-            let position = bodies.position(self.slot as usize);
+        if let Carrier::Body(slot) = self.carrier {
+            let position = bodies.position(slot as usize);
             (self.x, self.y) = (position.x.to_bits(), position.y.to_bits());
         }
     }
@@ -56,7 +75,7 @@ impl Source {
 pub(crate) fn pull(sources: &[Source], slot: usize, x: i64, y: i64) -> [i128; 2] {
     let mut sum = [0i128; 2];
     for source in sources {
-        if source.slot as usize == slot {
+        if source.carrier == Carrier::Body(slot as u32) {
             continue;
         }
         // Positions are within ±10⁹ m, so the difference fits.

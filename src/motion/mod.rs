@@ -6,10 +6,11 @@
 
 mod damping;
 mod drive;
-pub(crate) mod gravity;
+mod gravity;
 mod integrate;
 mod span;
 
 pub(crate) use drive::{Drive, Push, acceleration};
+pub(crate) use gravity::Source;
 pub use integrate::{Bound, Integrator};
 pub(crate) use integrate::{Fault, integrate};

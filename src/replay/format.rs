@@ -126,7 +126,7 @@ impl<R: Read> RecordReader<R> {
             RecordReader { input, chain: 0, digest, offset: 0, bytes: Vec::new(), payload: 0..0, tick_rate: 0 };
         let whole = reader.fetch(HEADER)?;
         let bytes = &reader.bytes;
-        if !MAGIC.starts_with(&bytes[..bytes.len().min(MAGIC.len())]) || bytes.is_empty() {
+        if !MAGIC.starts_with(&bytes[..bytes.len().min(MAGIC.len())]) {
             return Err(ReplayError::NotAReplay);
         }
         if !whole {

@@ -31,8 +31,8 @@ pub struct Player<R> {
     world: World,
     ticks: u64,
     commands: u64,
-    /// The commands of the tick played last.
-    last: Vec<Command>,
+    /// Whether the record read last is a tick or the tail, so that its payload has commands.
+    has_commands: bool,
     had_tail: bool,
     finished: bool,
 }
@@ -62,8 +62,7 @@ impl<R: Read> Player<R> {
         if world.config().tick_rate != records.tick_rate {
             return Err(ReplayError::Corrupt { tick: 0, offset, reason: "its tick rate is not the header's" });
         }
-        let last = Vec::new();
-        Ok(Player { records, world, ticks: 0, commands: 0, last, had_tail: false, finished: false })
+        Ok(Player { records, world, ticks: 0, commands: 0, has_commands: false, had_tail: false, finished: false })
     }
 
     /// The world as played so far.
@@ -71,9 +70,15 @@ impl<R: Read> Player<R> {
         &self.world
     }
 
-    /// The commands before the tick played last, the game's own input among them.
-    pub fn commands(&self) -> &[Command] {
-        &self.last
+    /// The commands before the tick played last, the game's own input among them. Decoded anew at each call: a file
+    /// can hold more commands than memory does.
+    pub fn commands(&self) -> impl Iterator<Item = Command> + '_ {
+        let mut reader = Reader::new(if self.has_commands { self.records.payload() } else { &[] });
+        // The hash stands first.
+        let _ = reader.take::<u64>("hash");
+        core::iter::from_fn(
+            move || if reader.remaining() > 0 { Command::load(&mut reader, "command").ok() } else { None },
+        )
     }
 
     /// Plays one tick and compares the hash. `Some` is that hash, `None` the end of the replay.
@@ -82,10 +87,17 @@ impl<R: Read> Player<R> {
     /// [`ReplayError::Truncated`] after its last whole tick.
     pub fn step(&mut self) -> Result<Option<u64>, ReplayError> {
         while let Some(recorded) = self.read()? {
-            for (index, command) in self.last.iter().enumerate() {
-                let tick = self.ticks.saturating_add(1);
-                let refused = |error| ReplayError::Refused { tick, index: index as u64, error };
-                self.world.apply(command.clone()).map_err(refused)?;
+            // Each has been decoded once already, by `read`.
+            let tick = self.ticks.saturating_add(1);
+            let decode = |error| ReplayError::Decode { tick, offset: recorded.offset, error };
+            let mut reader = Reader::new(self.records.payload());
+            reader.take::<u64>("hash").map_err(decode)?;
+            let mut index = 0u64;
+            while reader.remaining() > 0 {
+                let command = Command::load(&mut reader, "command").map_err(decode)?;
+                let refused = |error| ReplayError::Refused { tick, index, error };
+                self.world.apply(command).map_err(refused)?;
+                index = index.saturating_add(1);
             }
             if recorded.is_tick {
                 self.world.step();
@@ -119,23 +131,23 @@ impl<R: Read> Player<R> {
         Ok(Summary { ticks: self.ticks, commands: self.commands, hash })
     }
 
-    /// Reads the next tick or tail and its commands; `None` at the end.
+    /// Reads the next tick or tail, and its commands to see that they are some; `None` at the end.
     fn read(&mut self) -> Result<Option<Recorded>, ReplayError> {
         let recorded = self.read_record().map_err(|error| match error {
             // What a file that was cut off holds is whole ticks; everything else is wrong in the tick being read.
             ReplayError::Truncated { .. } => error.at(self.ticks),
             error => error.at(self.ticks.saturating_add(1)),
         })?;
-        self.last.clear();
+        self.has_commands = recorded.is_some();
         let Some(recorded) = recorded else { return Ok(None) };
         let tick = self.ticks.saturating_add(1);
         let decode = |error| ReplayError::Decode { tick, offset: recorded.offset, error };
         let mut reader = Reader::new(self.records.payload());
         let hash = reader.take("hash").map_err(decode)?;
         while reader.remaining() > 0 {
-            self.last.push(Command::load(&mut reader, "command").map_err(decode)?);
+            Command::load(&mut reader, "command").map_err(decode)?;
+            self.commands = self.commands.saturating_add(1);
         }
-        self.commands = self.commands.saturating_add(self.last.len() as u64);
         Ok(Some(Recorded { hash, ..recorded }))
     }
 

@@ -9,7 +9,7 @@ use crate::num::{
     RangeError, Torque, Velocity,
 };
 use serde::Deserialize;
-use serde::de::{Deserializer, Error, SeqAccess, Visitor};
+use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -41,46 +41,55 @@ fn six_hundred() -> u64 {
     600
 }
 
-#[derive(Clone, Copy, Default, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum IntegratorJson {
-    #[default]
-    ForestRuth,
-    SymplecticEuler,
-}
+/// Declares a word of the file that stands for one of some values: text only, by these spellings.
+macro_rules! word {
+    ($(#[$doc:meta])* $name:ident($value:ty) = $default:expr; $($text:literal => $meaning:expr),* $(,)?) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy)]
+        pub(super) struct $name(pub(super) $value);
 
-impl From<IntegratorJson> for Integrator {
-    fn from(integrator: IntegratorJson) -> Self {
-        match integrator {
-            IntegratorJson::ForestRuth => Integrator::ForestRuth,
-            IntegratorJson::SymplecticEuler => Integrator::SymplecticEuler,
+        impl Default for $name {
+            fn default() -> Self {
+                $name($default)
+            }
         }
-    }
-}
 
-#[derive(Clone, Copy, Default, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum KindJson {
-    Static,
-    Kinematic,
-    #[default]
-    Dynamic,
-}
-
-impl From<KindJson> for BodyKind {
-    fn from(kind: KindJson) -> Self {
-        match kind {
-            KindJson::Static => BodyKind::Static,
-            KindJson::Kinematic => BodyKind::Kinematic,
-            KindJson::Dynamic => BodyKind::Dynamic,
+        impl<'de> Deserialize<'de> for $name {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let text = String::deserialize(deserializer)?;
+                match text.as_str() {
+                    $($text => Ok($name($meaning)),)*
+                    _ => Err(D::Error::unknown_variant(&text, &[$($text),*])),
+                }
+            }
         }
-    }
+    };
+}
+
+word! {
+    /// How motion is integrated.
+    IntegratorJson(Integrator) = Integrator::ForestRuth;
+    "forest_ruth" => Integrator::ForestRuth,
+    "symplectic_euler" => Integrator::SymplecticEuler,
+}
+
+word! {
+    /// What moves a body.
+    KindJson(BodyKind) = BodyKind::Dynamic;
+    "static" => BodyKind::Static,
+    "kinematic" => BodyKind::Kinematic,
+    "dynamic" => BodyKind::Dynamic,
+}
+
+/// A value that may be left out; `null` is none.
+fn some<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+    T::deserialize(deserializer).map(Some)
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct BodyJson {
-    #[serde(default)]
+    #[serde(default, deserialize_with = "some")]
     pub(super) name: Option<String>,
     #[serde(default)]
     kind: KindJson,
@@ -96,9 +105,9 @@ pub(super) struct BodyJson {
     force: Pair<Force>,
     #[serde(default)]
     torque: Number<Torque>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "some")]
     mass: Option<Number<Mass>>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "some")]
     inertia: Option<Number<Inertia>>,
     #[serde(default)]
     fixed_rotation: bool,
@@ -118,7 +127,7 @@ impl BodyJson {
     pub(super) fn def(&self) -> BodyDef {
         let mass = self.mass.map_or(BodyDef::default().mass, |mass| mass.0);
         BodyDef {
-            kind: self.kind.into(),
+            kind: self.kind.0,
             position: self.position.0,
             angle: self.angle.0,
             velocity: self.velocity.0,
@@ -180,7 +189,7 @@ impl<'de> Deserialize<'de> for NoColliders {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AttractorJson {
-    #[serde(default)]
+    #[serde(default, deserialize_with = "some")]
     pub(super) name: Option<String>,
     position: Pair<Length>,
     mu: Number<Mu>,
@@ -208,33 +217,91 @@ pub(super) struct CommandJson {
     pub(super) action: Action,
 }
 
-/// The commands of a script, by the names that [`crate::Command`] has for them.
-#[derive(Deserialize)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-#[allow(clippy::large_enum_variant, reason = "a script is read once")]
-pub(super) enum Action {
-    CreateBody(Object<BodyJson>),
-    DestroyBody { body: Reference },
-    SetKind { body: Reference, kind: KindJson },
-    SetPosition { body: Reference, position: Pair<Length> },
-    SetAngle { body: Reference, angle: Phi },
-    SetVelocity { body: Reference, velocity: Pair<Velocity> },
-    SetAngularVelocity { body: Reference, angular_velocity: Number<AngularVelocity> },
-    SetForce { body: Reference, force: Pair<Force> },
-    SetTorque { body: Reference, torque: Number<Torque> },
-    SetMass { body: Reference, mass: Number<Mass>, inertia: Option<Number<Inertia>> },
-    SetFixedRotation { body: Reference, fixed: bool },
-    SetDamping { body: Reference, linear: Number<Damping>, angular: Number<Damping> },
-    SetMu { body: Reference, mu: Number<Mu> },
-    SetUserData { body: Reference, user_data: u64 },
-    ApplyForce { body: Reference, force: Pair<Force>, point: Option<Pair<Length>> },
-    ApplyTorque { body: Reference, torque: Number<Torque> },
-    ApplyImpulse { body: Reference, impulse: Pair<Impulse>, point: Option<Pair<Length>> },
-    ApplyAngularImpulse { body: Reference, impulse: Number<AngularImpulse> },
-    CreateAttractor(Object<AttractorJson>),
-    SetAttractor { attractor: Reference, position: Pair<Length>, mu: Number<Mu> },
-    DestroyAttractor { attractor: Reference },
-    SetGravity { gravity: Pair<Acceleration> },
-    ClearStatus {},
-    Input { text: String },
+/// Declares the commands of a script: an object with one key, the command's name, whose value is an object as well.
+macro_rules! actions {
+    ($($text:literal => $name:ident $({ $($(#[$attribute:meta])* $field:ident: $type:ty),* $(,)? })? $(($json:ty))?),* $(,)?) => {
+        pub(super) enum Action {
+            $($name(actions!(@type $name $(($json))?)),)*
+        }
+
+        $($(
+            #[derive(Deserialize)]
+            #[serde(deny_unknown_fields)]
+            pub(super) struct $name {
+                $($(#[$attribute])* pub(super) $field: $type,)*
+            }
+        )?)*
+
+        struct ActionVisitor;
+
+        impl<'de> Visitor<'de> for ActionVisitor {
+            type Value = Action;
+
+            fn expecting(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                f.write_str("an object with one command")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Action, A::Error> {
+                let name: String = map.next_key()?.ok_or_else(|| A::Error::invalid_length(0, &self))?;
+                let action = match name.as_str() {
+                    $($text => Action::$name(map.next_value::<Object<_>>()?.0),)*
+                    _ => return Err(A::Error::unknown_variant(&name, &[$($text),*])),
+                };
+                match map.next_key::<String>()? {
+                    None => Ok(action),
+                    Some(_) => Err(A::Error::invalid_length(2, &self)),
+                }
+            }
+        }
+
+        impl<'de> Deserialize<'de> for Action {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                deserializer.deserialize_map(ActionVisitor)
+            }
+        }
+    };
+    (@type $name:ident) => { $name };
+    (@type $name:ident ($json:ty)) => { $json };
+}
+
+actions! {
+    "create_body" => CreateBody(BodyJson),
+    "destroy_body" => DestroyBody { body: Reference },
+    "set_kind" => SetKind { body: Reference, kind: KindJson },
+    "set_position" => SetPosition { body: Reference, position: Pair<Length> },
+    "set_angle" => SetAngle { body: Reference, angle: Phi },
+    "set_velocity" => SetVelocity { body: Reference, velocity: Pair<Velocity> },
+    "set_angular_velocity" => SetAngularVelocity { body: Reference, angular_velocity: Number<AngularVelocity> },
+    "set_force" => SetForce { body: Reference, force: Pair<Force> },
+    "set_torque" => SetTorque { body: Reference, torque: Number<Torque> },
+    "set_mass" => SetMass {
+        body: Reference,
+        mass: Number<Mass>,
+        #[serde(default, deserialize_with = "some")]
+        inertia: Option<Number<Inertia>>,
+    },
+    "set_fixed_rotation" => SetFixedRotation { body: Reference, fixed: bool },
+    "set_damping" => SetDamping { body: Reference, linear: Number<Damping>, angular: Number<Damping> },
+    "set_mu" => SetMu { body: Reference, mu: Number<Mu> },
+    "set_user_data" => SetUserData { body: Reference, user_data: u64 },
+    "apply_force" => ApplyForce {
+        body: Reference,
+        force: Pair<Force>,
+        #[serde(default, deserialize_with = "some")]
+        point: Option<Pair<Length>>,
+    },
+    "apply_torque" => ApplyTorque { body: Reference, torque: Number<Torque> },
+    "apply_impulse" => ApplyImpulse {
+        body: Reference,
+        impulse: Pair<Impulse>,
+        #[serde(default, deserialize_with = "some")]
+        point: Option<Pair<Length>>,
+    },
+    "apply_angular_impulse" => ApplyAngularImpulse { body: Reference, impulse: Number<AngularImpulse> },
+    "create_attractor" => CreateAttractor(AttractorJson),
+    "set_attractor" => SetAttractor { attractor: Reference, position: Pair<Length>, mu: Number<Mu> },
+    "destroy_attractor" => DestroyAttractor { attractor: Reference },
+    "set_gravity" => SetGravity { gravity: Pair<Acceleration> },
+    "clear_status" => ClearStatus {},
+    "input" => Input { text: String },
 }

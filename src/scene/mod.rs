@@ -30,7 +30,7 @@
 //!
 //! | key | value | default |
 //! |---|---|---|
-//! | `name` | text; the scene refers to the body by it | its index |
+//! | `name` | text, once in the scene; the scene refers to the body by it | its index |
 //! | `kind` | `"dynamic"`, `"kinematic"` or `"static"` | `"dynamic"` |
 //! | `position` | [x, y] in m | [0, 0] |
 //! | `angle` | radians in [0, 2π] | 0 |

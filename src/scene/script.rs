@@ -1,12 +1,12 @@
 //! A scene as read, and its commands as the ticks pass.
 
 use super::error::SceneError;
-use super::json::{Action, BodyJson, Reference, SceneJson, inertia};
+use super::json::{self, Action, BodyJson, Reference, SceneJson, inertia};
 use super::object::Object;
 use crate::World;
 use crate::body::{Attractor, BodyDef};
 use crate::store::{AttractorId, BodyId};
-use crate::world::{Command, Commands, Reply, WorldDef};
+use crate::world::{Command, CommandError, Commands, INPUT_MAX, Reply, WorldDef};
 use std::collections::BTreeMap;
 
 /// A scene that has been read and checked.
@@ -31,7 +31,7 @@ impl Scene {
             tick_rate: file.tick_rate,
             substeps: file.substeps,
             gravity: file.gravity.0,
-            integrator: file.integrator.into(),
+            integrator: file.integrator.0,
         };
         def.check().map_err(|error| SceneError::new("", error))?;
         let scene = Scene { file, def };
@@ -86,12 +86,16 @@ impl<Id: Copy> Cast<Id> {
     }
 
     /// The label of the next thing created; a name must not be in use already.
-    fn label(&self, name: Option<&str>) -> Result<String, &'static str> {
+    fn label(&self, name: Option<&str>) -> Result<String, String> {
         let label = name.map_or_else(|| self.order.len().to_string(), String::from);
         if label.is_empty() || label.chars().count() > 64 || label.chars().any(char::is_control) {
-            return Err("its name must have 1 to 64 characters, none of them a control character");
+            return Err("its name must have 1 to 64 characters, none of them a control character".into());
         }
-        if self.ids.contains_key(&label) { Err("its name is in use already") } else { Ok(label) }
+        if self.ids.contains_key(&label) {
+            // Also of one that was destroyed: in the tables that a run prints, a name means one body.
+            return Err(format!("its name \"{label}\" is in use already"));
+        }
+        Ok(label)
     }
 
     fn add(&mut self, label: String, id: Id) {
@@ -143,17 +147,25 @@ impl<'s> Script<'s> {
             self.next = self.next.saturating_add(1);
             let place = || format!("commands[{at}]");
             match &command.action {
-                Action::CreateBody(Object(body)) => self.create_body(world, body, &place)?,
-                Action::CreateAttractor(Object(attractor)) => {
+                Action::CreateBody(body) => self.create_body(world, body, &place)?,
+                Action::CreateAttractor(attractor) => {
                     self.create_attractor(world, attractor.name.as_deref(), attractor.attractor(), &place)?;
                 }
                 action => {
                     let command = self.command(action).map_err(|error| SceneError::new(place(), error))?;
-                    world.apply(command).map_err(|error| SceneError::new(place(), error))?;
+                    world.apply(command).map_err(|error| SceneError::new(place(), self.in_words(error)))?;
                 }
             }
         }
         Ok(())
+    }
+
+    /// A refusal, with the scene's own name for a body or attractor that is gone.
+    fn in_words(&self, error: CommandError) -> String {
+        match error {
+            CommandError::NoSuchBody(id) => format!("there is no body \"{}\" any more", self.label(id)),
+            error => error.to_string(),
+        }
     }
 
     fn create_body(
@@ -192,47 +204,59 @@ impl<'s> Script<'s> {
             self.attractors.find(reference).ok_or_else(|| format!("there is no attractor {}", show(reference)))
         };
         Ok(match action {
-            Action::CreateBody(Object(def)) => Command::CreateBody { def: def.def() },
-            Action::DestroyBody { body: b } => Command::DestroyBody { body: body(b)? },
-            Action::SetKind { body: b, kind } => Command::SetKind { body: body(b)?, kind: (*kind).into() },
-            Action::SetPosition { body: b, position } => Command::SetPosition { body: body(b)?, position: position.0 },
-            Action::SetAngle { body: b, angle } => Command::SetAngle { body: body(b)?, angle: angle.0 },
-            Action::SetVelocity { body: b, velocity } => Command::SetVelocity { body: body(b)?, velocity: velocity.0 },
-            Action::SetAngularVelocity { body: b, angular_velocity } => {
+            Action::CreateBody(def) => Command::CreateBody { def: def.def() },
+            Action::DestroyBody(json::DestroyBody { body: b }) => Command::DestroyBody { body: body(b)? },
+            Action::SetKind(json::SetKind { body: b, kind }) => Command::SetKind { body: body(b)?, kind: kind.0 },
+            Action::SetPosition(json::SetPosition { body: b, position }) => {
+                Command::SetPosition { body: body(b)?, position: position.0 }
+            }
+            Action::SetAngle(json::SetAngle { body: b, angle }) => Command::SetAngle { body: body(b)?, angle: angle.0 },
+            Action::SetVelocity(json::SetVelocity { body: b, velocity }) => {
+                Command::SetVelocity { body: body(b)?, velocity: velocity.0 }
+            }
+            Action::SetAngularVelocity(json::SetAngularVelocity { body: b, angular_velocity }) => {
                 Command::SetAngularVelocity { body: body(b)?, angular_velocity: angular_velocity.0 }
             }
-            Action::SetForce { body: b, force } => Command::SetForce { body: body(b)?, force: force.0 },
-            Action::SetTorque { body: b, torque } => Command::SetTorque { body: body(b)?, torque: torque.0 },
-            Action::SetMass { body: b, mass, inertia: given } => {
+            Action::SetForce(json::SetForce { body: b, force }) => Command::SetForce { body: body(b)?, force: force.0 },
+            Action::SetTorque(json::SetTorque { body: b, torque }) => {
+                Command::SetTorque { body: body(b)?, torque: torque.0 }
+            }
+            Action::SetMass(json::SetMass { body: b, mass, inertia: given }) => {
                 Command::SetMass { body: body(b)?, mass: mass.0, inertia: inertia(*given, mass.0) }
             }
-            Action::SetFixedRotation { body: b, fixed } => Command::SetFixedRotation { body: body(b)?, fixed: *fixed },
-            Action::SetDamping { body: b, linear, angular } => {
+            Action::SetFixedRotation(json::SetFixedRotation { body: b, fixed }) => {
+                Command::SetFixedRotation { body: body(b)?, fixed: *fixed }
+            }
+            Action::SetDamping(json::SetDamping { body: b, linear, angular }) => {
                 Command::SetDamping { body: body(b)?, linear: linear.0, angular: angular.0 }
             }
-            Action::SetMu { body: b, mu } => Command::SetMu { body: body(b)?, mu: mu.0 },
-            Action::SetUserData { body: b, user_data } => {
+            Action::SetMu(json::SetMu { body: b, mu }) => Command::SetMu { body: body(b)?, mu: mu.0 },
+            Action::SetUserData(json::SetUserData { body: b, user_data }) => {
                 Command::SetUserData { body: body(b)?, user_data: *user_data }
             }
-            Action::ApplyForce { body: b, force, point } => {
+            Action::ApplyForce(json::ApplyForce { body: b, force, point }) => {
                 Command::ApplyForce { body: body(b)?, force: force.0, point: point.map(|p| p.0) }
             }
-            Action::ApplyTorque { body: b, torque } => Command::ApplyTorque { body: body(b)?, torque: torque.0 },
-            Action::ApplyImpulse { body: b, impulse, point } => {
+            Action::ApplyTorque(json::ApplyTorque { body: b, torque }) => {
+                Command::ApplyTorque { body: body(b)?, torque: torque.0 }
+            }
+            Action::ApplyImpulse(json::ApplyImpulse { body: b, impulse, point }) => {
                 Command::ApplyImpulse { body: body(b)?, impulse: impulse.0, point: point.map(|p| p.0) }
             }
-            Action::ApplyAngularImpulse { body: b, impulse } => {
+            Action::ApplyAngularImpulse(json::ApplyAngularImpulse { body: b, impulse }) => {
                 Command::ApplyAngularImpulse { body: body(b)?, impulse: impulse.0 }
             }
-            Action::CreateAttractor(Object(attractor)) => Command::CreateAttractor { attractor: attractor.attractor() },
-            Action::SetAttractor { attractor, position, mu } => Command::SetAttractor {
+            Action::CreateAttractor(attractor) => Command::CreateAttractor { attractor: attractor.attractor() },
+            Action::SetAttractor(json::SetAttractor { attractor, position, mu }) => Command::SetAttractor {
                 id: source(attractor)?,
                 attractor: Attractor { position: position.0, mu: mu.0 },
             },
-            Action::DestroyAttractor { attractor } => Command::DestroyAttractor { id: source(attractor)? },
-            Action::SetGravity { gravity } => Command::SetGravity { gravity: gravity.0 },
-            Action::ClearStatus {} => Command::ClearStatus,
-            Action::Input { text } => Command::Input { bytes: text.clone().into_bytes() },
+            Action::DestroyAttractor(json::DestroyAttractor { attractor }) => {
+                Command::DestroyAttractor { id: source(attractor)? }
+            }
+            Action::SetGravity(json::SetGravity { gravity }) => Command::SetGravity { gravity: gravity.0 },
+            Action::ClearStatus(json::ClearStatus {}) => Command::ClearStatus,
+            Action::Input(json::Input { text }) => Command::Input { bytes: text.clone().into_bytes() },
         })
     }
 
@@ -241,13 +265,16 @@ impl<'s> Script<'s> {
     fn check_references(mut self) -> Result<(), SceneError> {
         struct Rehearsal(u32);
         impl Commands for Rehearsal {
-            fn apply(&mut self, command: Command) -> Result<Reply, crate::world::CommandError> {
+            fn apply(&mut self, command: Command) -> Result<Reply, CommandError> {
                 self.0 = self.0.saturating_add(1);
                 let (index, generation) = (self.0, u32::MAX);
                 Ok(match command {
                     Command::CreateBody { def } => {
                         def.check()?;
                         Reply::Body(BodyId { index, generation })
+                    }
+                    Command::Input { bytes } if bytes.len() > INPUT_MAX => {
+                        return Err(CommandError::InputTooLong { length: bytes.len() as u64 });
                     }
                     Command::CreateAttractor { .. } => Reply::Attractor(AttractorId { index, generation }),
                     _ => Reply::Done,

@@ -269,6 +269,7 @@ impl<T: Row> Arena<T> {
         }
         let retired = |slot: &Slot<T>| slot.generation == u32::MAX && slot.link == END;
         let mut unlinked: usize = self.slots.iter().filter(|slot| slot.link != LIVE).count();
+        let mut retired_slots = self.slots.iter().filter(|slot| retired(slot)).count();
         let mut next = self.chain.free;
         // Each step of the walk uses up one free slot, so a chain with a loop ends as well.
         while next != END {
@@ -276,9 +277,10 @@ impl<T: Row> Arena<T> {
                 return Err("has a chain of free slots that is broken");
             };
             unlinked = unlinked.saturating_sub(1);
+            retired_slots = retired_slots.saturating_sub(usize::from(retired(slot)));
             next = slot.link;
         }
-        if unlinked > self.slots.iter().filter(|slot| retired(slot)).count() {
+        if unlinked > retired_slots {
             return Err("has free slots outside its chain");
         }
         if self.slots.iter().any(|slot| slot.link != LIVE && slot.value != T::default()) {

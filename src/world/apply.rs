@@ -5,7 +5,7 @@ use super::commands::Commands;
 use crate::World;
 use crate::body::{Attractor, BodyData, BodyDef, BodyError, BodyKind};
 use crate::geom::Vec2;
-use crate::motion::{Push, acceleration};
+use crate::motion::{Push, Source, acceleration};
 use crate::num::{
     Acceleration, AngularImpulse, AngularVelocity, Damping, Decimal, Force, Impulse, Length, Mu, Quantity, RangeError,
     Torque, Velocity, clamp_i64, cross_wide, mul_div,
@@ -49,7 +49,7 @@ impl Commands for World {
             }
             Command::SetMu { body, mu } => {
                 self.change(body, |data| data.mu = mu)?;
-                self.rebuild();
+                self.set_source(Source::carried(body.index as usize, mu));
             }
             Command::SetUserData { body, user_data } => self.change(body, |data| data.user_data = user_data)?,
             Command::ApplyForce { body, force, point } => {
@@ -78,11 +78,11 @@ impl Commands for World {
                 let slot = self.attractor_slot(id)?;
                 let attractor = attractor.checked()?;
                 self.attractors.update(slot, |a| *a = attractor);
-                self.rebuild();
+                self.set_source(Source::fixed(slot, attractor));
             }
             Command::DestroyAttractor { id } => {
                 self.attractors.remove(id.index, id.generation).ok_or(CommandError::NoSuchAttractor(id))?;
-                self.rebuild();
+                self.set_source(Source::fixed(id.index as usize, Attractor::default()));
             }
             Command::SetGravity { gravity } => {
                 self.config.gravity = gravity.checked()?;
@@ -154,10 +154,9 @@ impl World {
             return Err(CommandError::Full { what: "bodies", limit: Arena::<BodyData>::LIMIT });
         }
         let id = self.bodies.insert(def);
-        if def.mu == Mu::ZERO {
-            self.refresh(id.index as usize)
-        } else {
-            self.rebuild()
+        self.refresh(id.index as usize);
+        if def.mu != Mu::ZERO {
+            self.set_source(Source::carried(id.index as usize, def.mu));
         }
         Ok(id)
     }
@@ -166,11 +165,10 @@ impl World {
         let slot = self.slot(body)?;
         let pulls = self.bodies.cold.value(slot).mu != Mu::ZERO;
         self.bodies.remove(body);
-        self.pushes.retain(|push| push.slot as usize != slot);
+        self.drop_push(slot);
+        self.refresh(slot);
         if pulls {
-            self.rebuild()
-        } else {
-            self.refresh(slot)
+            self.set_source(Source::carried(slot, Mu::ZERO));
         }
         Ok(())
     }
@@ -181,7 +179,7 @@ impl World {
             return Err(CommandError::Full { what: "attractors", limit: Arena::<Attractor>::LIMIT });
         }
         let (index, generation) = self.attractors.insert(attractor);
-        self.rebuild();
+        self.set_source(Source::fixed(index as usize, attractor));
         Ok(AttractorId { index, generation })
     }
 
@@ -192,7 +190,7 @@ impl World {
         change(&mut data);
         data.check(self.bodies.velocity(slot), self.bodies.omega.get(slot))?;
         check_acceleration(&data, None)?;
-        check_acceleration(&data, self.pushes.iter().find(|push| push.slot as usize == slot))?;
+        check_acceleration(&data, self.drive.push_of(slot, &self.pushes))?;
         self.bodies.cold.update(slot, |row| *row = data);
         self.refresh(slot);
         Ok(())
@@ -201,7 +199,7 @@ impl World {
     fn change_kind(&mut self, body: BodyId, kind: BodyKind) -> Result<(), CommandError> {
         let slot = self.slot(body)?;
         if kind != BodyKind::Dynamic {
-            self.pushes.retain(|push| push.slot as usize != slot);
+            self.drop_push(slot);
         }
         if kind == BodyKind::Static {
             self.bodies.set_velocity(slot, Vec2::default());
@@ -222,8 +220,8 @@ impl World {
         let slot = self.slot(body)?;
         if fixed {
             self.bodies.omega.set(slot, AngularVelocity::ZERO);
-            for push in self.pushes.iter_mut().filter(|push| push.slot as usize == slot) {
-                push.torque = Torque::ZERO;
+            if self.drive.push_of(slot, &self.pushes).is_some() {
+                self.pushes[self.drive.push_at[slot] as usize].torque = Torque::ZERO;
             }
         }
         self.bodies.cold.update(slot, |data| {
@@ -251,23 +249,35 @@ impl World {
 
     /// Adds to the forces of this tick on a body.
     fn push(&mut self, slot: usize, force: Vec2<Force>, torque: Torque) -> Result<(), CommandError> {
-        let at = self.pushes.partition_point(|push| (push.slot as usize) < slot);
-        let present = self.pushes.get(at).filter(|push| push.slot as usize == slot);
-        let mut push = match present {
-            Some(push) => push.clone(),
-            None => Push { slot: slot as u32, force: Vec2::default(), torque: Torque::ZERO },
-        };
-        let is_new = present.is_none();
+        let present = self.drive.push_of(slot, &self.pushes);
+        let none = Push { slot: slot as u32, force: Vec2::default(), torque: Torque::ZERO };
+        let mut push = present.cloned().unwrap_or(none);
         push.force =
             Vec2::new(sum(push.force.x, force.x, Force::from_bits)?, sum(push.force.y, force.y, Force::from_bits)?);
         push.torque = sum(push.torque, torque, Torque::from_bits)?;
         check_acceleration(self.bodies.cold.value(slot), Some(&push))?;
-        if is_new {
-            self.pushes.insert(at, push);
+        if present.is_some() {
+            self.pushes[self.drive.push_at[slot] as usize] = push;
         } else {
-            self.pushes[at] = push;
+            self.drive.push_at[slot] = self.pushes.len() as u32;
+            self.pushes.push(push);
         }
         Ok(())
+    }
+
+    /// Forgets the forces of this tick on a body.
+    fn drop_push(&mut self, slot: usize) {
+        if self.drive.push_of(slot, &self.pushes).is_some() {
+            self.pushes.retain(|push| push.slot as usize != slot);
+            self.drive.index_pushes(&self.pushes);
+        }
+    }
+
+    /// Lets a source begin, change or cease to pull.
+    fn set_source(&mut self, source: Source) {
+        if self.drive.set_source(source) {
+            self.rebuild();
+        }
     }
 
     /// v += J/m, ω += (r × J)/I.

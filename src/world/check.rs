@@ -6,12 +6,12 @@ use crate::num::Quantity;
 
 impl World {
     /// Whether every invariant holds: free slots are empty and chained, columns are as long as their slots, values
-    /// are in range and fit their body's kind, forces of one tick are sorted and belong to dynamic bodies, and what
+    /// are in range and fit their body's kind, forces of one tick belong to dynamic bodies, once each, and what
     /// is derived is what deriving it again gives. O(n); for tests and for suspicion.
     ///
     /// Errors: the first broken invariant, in words.
     pub fn check(&self) -> Result<(), String> {
-        let World { config, tick: _, bodies, attractors, pushes: _, status: _, drive, faults } = self;
+        let World { config, tick: _, bodies, attractors, pushes, status: _, drive, faults } = self;
         self.check_lists()?;
         bodies.check().map_err(|reason| format!("the table of bodies {reason}"))?;
         attractors.check().map_err(|reason| format!("the table of attractors {reason}"))?;
@@ -20,6 +20,7 @@ impl World {
         }
         let mut fresh = Drive::default();
         fresh.prepare(config.integrator, config.tick_rate, config.substeps, bodies, attractors);
+        fresh.index_pushes(pushes);
         for slot in 0..bodies.cold.len() {
             fresh.set(slot, bodies.cold.value(slot), config.gravity, None);
         }
@@ -42,8 +43,10 @@ impl World {
         for (_, attractor) in attractors.iter() {
             attractor.checked().map_err(|error| error.to_string())?;
         }
-        if !pushes.is_sorted_by(|a, b| a.slot < b.slot) {
-            return Err("the forces of this tick are not sorted by body".into());
+        let mut slots: Vec<u32> = pushes.iter().map(|push| push.slot).collect();
+        slots.sort_unstable();
+        if !slots.is_sorted_by(|a, b| a < b) {
+            return Err("the forces of this tick name a body twice".into());
         }
         for push in pushes {
             let slot = push.slot as usize;

@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 /// The most bytes of one [`Command::Input`].
 pub const INPUT_MAX: usize = 65_536;
 
-/// Every change of a world. The methods of [`Commands`](crate::Commands) are sugar for these, so a recorder that records commands
-/// misses nothing. A refused command changes nothing.
+/// Every change of a world. The methods of [`Commands`](crate::Commands) are sugar for these, so a recorder that
+/// records commands misses nothing. A refused command changes nothing.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[non_exhaustive]
 #[allow(clippy::large_enum_variant, reason = "commands are few and short-lived, a box would cost each creation")]

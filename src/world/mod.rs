@@ -41,7 +41,7 @@ pub struct World {
     pub(crate) tick: u64,
     pub(crate) bodies: Bodies,
     pub(crate) attractors: Arena<Attractor>,
-    /// Forces and torques of one tick, by slot.
+    /// Forces and torques of one tick, in the order in which the bodies first got some.
     pub(crate) pushes: Vec<Push>,
     pub(crate) status: Status,
     /// Derived from the above.
@@ -118,6 +118,7 @@ impl World {
     pub(crate) fn rebuild(&mut self) {
         let World { config, bodies, attractors, drive, .. } = self;
         drive.prepare(config.integrator, config.tick_rate, config.substeps, bodies, attractors);
+        self.drive.index_pushes(&self.pushes);
         for slot in 0..self.bodies.cold.len() {
             self.refresh(slot);
         }

@@ -23,6 +23,7 @@ impl World {
 
         for push in pushes.drain(..) {
             let slot = push.slot as usize;
+            drive.push_at[slot] = u32::MAX;
             drive.set(slot, bodies.cold.value(slot), config.gravity, None);
         }
         for Fault { slot, bound } in faults.drain(..) {
