@@ -18,14 +18,28 @@ use tamias2d::{Commands, StatusEntry, World};
 #[command(after_long_help = "\
 A scene:
   { \"name\": \"tc2\", \"tick_rate\": 60, \"substeps\": 4, \"gravity\": [0, -9.8],
-    \"bodies\": [ { \"name\": \"left\", \"position\": [20, 20], \"velocity\": [0, 5], \"mass\": 10, \"inertia\": 15 },
-                { \"name\": \"floor\", \"kind\": \"static\" } ],
+    \"bodies\": [
+      { \"name\": \"left\", \"position\": [20, 20], \"velocity\": [0, 5], \"mass\": 10, \"inertia\": 15 },
+      { \"name\": \"floor\", \"kind\": \"static\" } ],
     \"attractors\": [ { \"position\": [0, 0], \"mu\": 1000 } ],
-    \"commands\": [ { \"tick\": 30, \"do\": { \"apply_impulse\": { \"body\": \"left\", \"impulse\": [0, 5] } } } ] }
+    \"commands\": [
+      { \"tick\": 30, \"do\": { \"apply_impulse\": { \"body\": \"left\", \"impulse\": [0, 5] } } } ] }
 
-Only name, tick_rate and bodies are needed. A body may have: name, kind (dynamic, kinematic, static), position, angle
-(radians in [0, 2π]), velocity, angular_velocity, force, torque, mass, inertia, fixed_rotation, linear_damping,
-angular_damping, mu, user_data, colliders (an empty list in this version). SI units throughout. Other keys are refused.")]
+Only name, tick_rate and bodies are needed; other keys are refused. SI units, angles in radians.
+  scene      name, tick_rate, bodies, substeps, integrator (forest_ruth, symplectic_euler),
+             gravity, attractors, commands, ticks (length of a recording), about
+  body       name, kind (dynamic, kinematic, static), position, angle (0 to 2π), velocity,
+             angular_velocity, force, torque, mass, inertia, fixed_rotation, linear_damping,
+             angular_damping, mu, user_data, colliders (an empty list in this version)
+  attractor  name, position, mu
+
+Commands, before the step of their tick; \"body\" and \"attractor\" are a name or an index:
+  create_body (a body), destroy_body, set_kind, set_position, set_angle, set_velocity,
+  set_angular_velocity, set_force, set_torque, set_mass (mass, inertia), set_fixed_rotation
+  (fixed), set_damping (linear, angular), set_mu, set_user_data, apply_force (force, point),
+  apply_torque, apply_impulse (impulse, point), apply_angular_impulse (impulse),
+  create_attractor (an attractor), set_attractor, destroy_attractor, set_gravity,
+  clear_status, input (text)")]
 pub(crate) struct Run {
     /// The scene, a JSON file; - is standard input. See `tamias2d scenes` for examples
     scene: String,
