@@ -160,12 +160,14 @@ impl<R: Read> RecordReader<R> {
         &self.bytes[self.payload.clone()]
     }
 
-    /// Adds `count` bytes to the buffer; whether they were there. Reserves at most twice what was read.
+    /// Adds `count` bytes to the buffer; whether they were there. Reserves at most an eighth more than was read, or a
+    /// chunk more.
     fn fetch(&mut self, count: usize) -> Result<bool, ReplayError> {
         let target = self.bytes.len().saturating_add(count);
         while self.bytes.len() < target {
             let have = self.bytes.len();
-            let next = target.min(have.saturating_add(have.max(CHUNK)));
+            let next = target.min(have.saturating_add((have >> 3).max(CHUNK)));
+            self.bytes.reserve_exact(next.saturating_sub(have));
             self.bytes.resize(next, 0);
             let mut filled = have;
             while filled < next {
