@@ -190,12 +190,8 @@ fn conclude(results: &[Verified]) -> Result<(), Failure> {
 
 /// Opens a replay for reading.
 pub(crate) fn open(path: &Path) -> Result<Player<impl Read + use<>>, Failure> {
-    let failure = |error: ReplayError| {
-        let message = format!("{}: {error}", path.display());
-        if status(&error) == 1 { Failure::failed(message) } else { Failure::usage(message) }
-    };
-    let file = File::open(path).map_err(|error| failure(ReplayError::Io(error)))?;
-    Player::new(BufReader::new(file)).map_err(failure)
+    let file = File::open(path).map_err(|error| failure(path, &ReplayError::Io(error)))?;
+    Player::new(BufReader::new(file)).map_err(|error| failure(path, &error))
 }
 
 /// The failure that a replay's error is.

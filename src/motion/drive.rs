@@ -140,7 +140,7 @@ impl Drive {
     /// Puts a source in its place, in that of another by the same carrier, or takes that one out if its μ is 0.
     /// Whether there are sources now and were none, or the other way round: then the scheme is another one.
     pub(crate) fn set_source(&mut self, source: Source) -> bool {
-        let had = self.sources.is_empty();
+        let was_empty = self.sources.is_empty();
         let at = self.sources.partition_point(|other| other.order() < source.order());
         let present = self.sources.get(at).is_some_and(|other| other.order() == source.order());
         match (present, source.pulls()) {
@@ -149,7 +149,7 @@ impl Drive {
             (false, true) => self.sources.insert(at, source),
             (false, false) => {}
         }
-        had != self.sources.is_empty()
+        was_empty != self.sources.is_empty()
     }
 
     /// Moves the sources that bodies carry to where these are.

@@ -5,7 +5,7 @@
 //! | d | `i64`, 32 fraction bits | 2·10⁹ m: below 2⁶³ |
 //! | d² | `u128`, 64 fraction bits | below 2¹²⁷ |
 //! | 1/d, 1/d³, μ | 64-bit mantissas, highest bit kept up, with an exponent | relative error below 2⁻⁶⁰ |
-//! | a | `i128`, 48 fraction bits | saturates at ±2¹²⁶, so that sums do not wrap; the caller limits the sum |
+//! | a | `i128`, 48 fraction bits | saturates at ±2¹⁰⁰, so that sums do not wrap; the caller limits the sum |
 
 use crate::body::{Attractor, Bodies};
 use crate::geom::Vec2;

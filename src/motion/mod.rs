@@ -1,8 +1,8 @@
 //! Motion: forces to velocities to positions.
 //!
 //! [`Drive`] holds what constant acceleration does to each body in one step of the scheme, prepared when commands
-//! change it; [`integrate`] holds the schemes, each one function of one signature; [`gravity`] is the pull of
-//! attractors and bodies.
+//! change it; [`mod@integrate`] holds the schemes, each a list of stages; [`gravity`] is the pull of attractors and
+//! bodies.
 
 mod damping;
 mod drive;

@@ -1,9 +1,6 @@
 //! Lengths of time, as multipliers with 63 fraction bits.
 
-use crate::num::{div, mul};
-
-/// 1/2π with 64 fraction bits.
-const TURN_PER_RADIAN_Q64: i128 = 2_935_890_503_282_001_226;
+use crate::num::{TURN_PER_RADIAN_Q64, div, mul};
 
 /// A length of time T = w/n s; negative for a step back within a composed scheme.
 ///

@@ -3,9 +3,9 @@
 use super::{Angle, Quantity, Radians, RangeError, round_shift};
 
 /// 2π with 60 fraction bits.
-const TAU_Q60: i128 = 7_244_019_458_077_122_842;
+pub(crate) const TAU_Q60: i128 = 7_244_019_458_077_122_842;
 /// 1/2π with 64 fraction bits.
-const TURN_PER_RADIAN_Q64: i128 = 2_935_890_503_282_001_226;
+pub(crate) const TURN_PER_RADIAN_Q64: i128 = 2_935_890_503_282_001_226;
 /// One turn in the 48 fraction bits of [`Angle`].
 const TURN: i64 = 1 << 48;
 

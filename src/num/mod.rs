@@ -45,6 +45,7 @@ mod round;
 mod trig;
 mod wide;
 
+pub(crate) use angle::TURN_PER_RADIAN_Q64;
 pub use decimal::Decimal;
 pub use float::FromF64;
 pub use quantity::{

@@ -4,16 +4,13 @@
 //! at the interface's edge, where its time (about 0.2 µs) does not matter, behind guards: its own `atan2` overflows
 //! in y/x and its `sqrt` does not return for some inputs, so neither is called.
 
+use super::angle::{TAU_Q60, TURN_PER_RADIAN_Q64};
 use super::{Angle, div, round_shift};
 use fixed::FixedI64;
 use fixed::types::extra::U56;
 
 /// Fraction bits inside the polynomials.
 const Q: u32 = 62;
-/// 2π with 60 fraction bits: 7 244 019 458 077 122 842 / 2⁶⁰.
-const TAU_Q60: i64 = 7_244_019_458_077_122_842;
-/// 1/2π with 64 fraction bits.
-const TURN_PER_RADIAN_Q64: i64 = 2_935_890_503_282_001_226;
 /// One turn, a quarter and an eighth of it, in the 48 fraction bits of [`Angle`].
 const TURN: i64 = 1 << 48;
 const QUARTER: i64 = TURN >> 2;
@@ -42,7 +39,7 @@ pub const fn sin_cos(angle: Angle) -> (i32, i32) {
     // The nearest quadrant, and what is left of the angle: at most an eighth of a turn to either side.
     let quadrant = (fraction + EIGHTH) >> 46;
     let rest = fraction - quadrant * QUARTER;
-    let r = round_shift(rest as i128 * TAU_Q60 as i128, 48 + 60 - Q) as i64;
+    let r = round_shift(rest as i128 * TAU_Q60, 48 + 60 - Q) as i64;
     let r2 = mul_q(r, r);
 
     const ONE: i64 = 1 << Q;
@@ -90,7 +87,7 @@ pub fn atan2(y: i64, x: i64) -> Angle {
     } else {
         let ratio = FixedI64::<U56>::from_bits(div(small << 56, big) as i64);
         let radians = cordic::atan(ratio).to_bits();
-        round_shift(radians as i128 * TURN_PER_RADIAN_Q64 as i128, 56 + 64 - 48) as i64
+        round_shift(radians as i128 * TURN_PER_RADIAN_Q64, 56 + 64 - 48) as i64
     };
     let from_axis = if ay > ax { QUARTER - octant } else { octant };
     let upper = if x < 0 { 2 * QUARTER - from_axis } else { from_axis };
