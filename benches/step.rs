@@ -3,7 +3,7 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
-use tamias2d::{Attractor, BodyDef, Commands, Vec2, World, WorldDef};
+use tamias2d::{Attractor, BodyDef, BodyKind, ColliderDef, Commands, Shape, Vec2, World, WorldDef};
 
 /// `count` free bodies on a grid, each with its own velocity and spin.
 fn free_bodies(count: u32, gravity: f64) -> World {
@@ -23,6 +23,29 @@ fn free_bodies(count: u32, gravity: f64) -> World {
     world
 }
 
+/// A pyramid of unit boxes on the ground, after a second in which it has settled.
+fn pyramid(rows: u32) -> World {
+    let gravity = Vec2::from_f64(0.0, -9.81).expect("in range");
+    let mut world = World::new(&WorldDef { gravity, ..WorldDef::default() }).expect("accepted");
+    let mut create = |kind, x, y, width: &str| {
+        let (width, height) = (width.parse().expect("in range"), "1".parse().expect("in range"));
+        let (position, colliders) =
+            (Vec2::from_f64(x, y).expect("in range"), vec![ColliderDef::new(Shape::Box { width, height })]);
+        world.create_body(&BodyDef { kind, position, colliders, ..BodyDef::default() }).expect("accepted");
+    };
+    create(BodyKind::Static, 0.0, -0.5, "1000");
+    for row in 0..rows {
+        for i in 0..rows - row {
+            let x = 1.01 * (f64::from(i) - f64::from(rows - row) / 2.0);
+            create(BodyKind::Dynamic, x, f64::from(row) + 0.5, "1");
+        }
+    }
+    for _ in 0..60 {
+        world.step();
+    }
+    world
+}
+
 fn step(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");
     for count in [100, 1_000, 10_000, 100_000] {
@@ -34,6 +57,10 @@ fn step(c: &mut Criterion) {
         Attractor { position: Vec2::from_f64(0.0, -500.0).expect("in range"), mu: "1000".parse().expect("in range") };
     world.create_attractor(star).expect("accepted");
     group.bench_function("attractor/1000", |b| b.iter(|| world.step()));
+    for rows in [10, 40] {
+        let mut world = pyramid(rows);
+        group.bench_function(BenchmarkId::new("pyramid", rows), |b| b.iter(|| world.step()));
+    }
     group.finish();
 
     let mut group = c.benchmark_group("state");

@@ -7,36 +7,47 @@
 //! | module | what |
 //! |---|---|
 //! | [`num`] | quantity types, the one rounding and overflow policy, roots and trigonometry |
-//! | [`geom`] | vectors and rotations |
+//! | [`geom`] | vectors, rotations, boxes |
 //! | `store` | bytes, field lists, columns, slots with generations |
-//! | `body` | what bodies and attractors are |
-//! | `motion` | integrators, gravity, damping |
-//! | `world` | the world, its step, its commands |
+//! | `shape` | convex forms, their outlines and masses |
+//! | `body` | what bodies, colliders and attractors are |
+//! | `motion`, `broad`, `narrow` | integrators, gravity, damping; who might touch; where two outlines touch |
+//! | `contact` | pairs, impulses that last, events |
+//! | `solver` | the contact rows, impacts |
+//! | `world` | the world, its step, its commands, its queries |
 //! | `snapshot` | save, load, hash, diff |
 //! | [`replay`] | recording, playing, verifying |
 #![forbid(unsafe_code)]
 #![deny(missing_docs, clippy::arithmetic_side_effects)]
 
 mod body;
+mod broad;
+mod contact;
 pub mod geom;
 mod motion;
+mod narrow;
 pub mod num;
 pub mod replay;
 #[cfg(feature = "scene")]
 pub mod scene;
+mod shape;
 mod snapshot;
+mod solver;
 mod store;
 mod world;
 
 pub use body::{Attractor, BodyDef, BodyError, BodyKind};
-pub use geom::{Rot, Vec2};
+pub use contact::{Event, EventKind};
+pub use geom::{Aabb, Rot, Vec2};
 pub use num::{
-    Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Energy, Force, Impulse, Inertia, Length, Mass, Mu,
-    NumError, Radians, RangeError, Torque, Velocity,
+    Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Density, Energy, Force, Friction, Impulse, Inertia,
+    Length, Mass, Mu, NumError, Radians, RangeError, Restitution, Torque, Velocity,
 };
+pub use shape::{ColliderDef, Filter, Shape, ShapeError};
 pub use snapshot::{HashPart, LAW, SAVE_VERSION};
-pub use store::{AttractorId, BodyId, DecodeError, Difference};
+pub use solver::{Impact, ImpactError, Striker, impact};
+pub use store::{AttractorId, BodyId, ColliderId, DecodeError, Difference};
 pub use world::{
-    Body, Bound, Command, CommandError, Commands, ConfigError, INPUT_MAX, Integrator, Reply, Status, StatusEntry,
-    World, WorldDef,
+    Body, Bound, ClosestPoint, Collider, Command, CommandError, Commands, ConfigError, INPUT_MAX, Integrator, RayHit,
+    Reply, Status, StatusEntry, World, WorldDef,
 };

@@ -8,10 +8,10 @@ use crate::store::{DecodeError, Diff, Difference, Hasher, Reader, Record, put};
 
 const MAGIC: &[u8; 8] = b"TAMIAS-W";
 /// The format version of saved worlds.
-pub const SAVE_VERSION: u32 = 1;
+pub const SAVE_VERSION: u32 = 2;
 /// The arithmetic law: what every number, rounding and order of operations is. Worlds of two laws continue
 /// differently, so a build refuses other laws.
-pub const LAW: u32 = 1;
+pub const LAW: u32 = 2;
 
 /// The hash of one part of a world's state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,8 +94,8 @@ impl World {
     }
 
     /// The hash of each part of the state.
-    pub fn hash_parts(&self) -> [HashPart; 6] {
-        let World { config, tick, bodies, attractors, pushes, status, drive: _, faults: _ } = self;
+    pub fn hash_parts(&self) -> [HashPart; 8] {
+        let World { config, tick, bodies, colliders, attractors, pushes, contacts, status, .. } = self;
         let mut clock = Hasher::new();
         config.save(&mut clock);
         tick.save(&mut clock);
@@ -111,8 +111,10 @@ impl World {
             part("configuration", clock.finish()),
             part("bodies", bodies.cold.hash()),
             part("motion", bodies.motion_hash()),
+            part("colliders", colliders.hash()),
             part("attractors", attractors.hash()),
             part("forces", record(pushes)),
+            part("contacts", contacts.hash()),
             part("status", faults.finish()),
         ]
     }

@@ -3,13 +3,17 @@
 
 mod common;
 
-use common::{acc, at, newton_seconds, newtons, num, vel, world};
+use common::{acc, at, disc, newton_seconds, newtons, num, vel, world};
 use tamias2d::num::{Decimal, Quantity};
 use tamias2d::{
     Acceleration, Angle, AngularImpulse, AngularVelocity, Attractor, AttractorId, BodyDef, BodyError, BodyId, BodyKind,
-    Command, CommandError, Commands, ConfigError, Damping, Force, INPUT_MAX, Impulse, Inertia, Integrator, Length,
-    Mass, Mu, RangeError, Torque, Vec2, Velocity, World, WorldDef,
+    ColliderDef, ColliderId, Command, CommandError, Commands, ConfigError, Damping, Density, Filter, Force, Friction,
+    INPUT_MAX, Impulse, Inertia, Integrator, Length, Mass, Mu, RangeError, Restitution, Shape, ShapeError, Torque,
+    Vec2, Velocity, World, WorldDef,
 };
+
+/// The collider of the dynamic body.
+const COLLIDER: ColliderId = ColliderId { index: 1, generation: 0 };
 
 /// A world with a body of each kind, one with fixed rotation, a heavy one, and ids of what is gone.
 struct Scene {
@@ -27,10 +31,17 @@ struct Scene {
 fn scene() -> Scene {
     let mut world = world(0.0, -9.8);
     let mut body = |def: BodyDef| world.create_body(&def).expect("accepted");
-    let gone = body(BodyDef::default());
-    let dynamic = body(BodyDef { position: at(1.0, 2.0), velocity: vel(3.0, 4.0), ..BodyDef::default() });
+    let gone = body(BodyDef { colliders: vec![disc(0.5)], ..BodyDef::default() });
+    let (mass, inertia, colliders) = (Some(num("1")), Some(num("1")), vec![disc(0.5)]);
+    let (position, velocity) = (at(1.0, 2.0), vel(3.0, 4.0));
+    let dynamic = body(BodyDef { position, velocity, mass, inertia, colliders, ..BodyDef::default() });
     let fixed = body(BodyDef { fixed_rotation: true, ..BodyDef::default() });
-    let heavy = body(BodyDef { mass: Mass::MAX, inertia: Inertia::MAX, position: at(-1e9, 0.0), ..BodyDef::default() });
+    let heavy = body(BodyDef {
+        mass: Some(Mass::MAX),
+        inertia: Some(Inertia::MAX),
+        position: at(-1e9, 0.0),
+        ..BodyDef::default()
+    });
     let kinematic = body(BodyDef { kind: BodyKind::Kinematic, velocity: vel(1.0, 0.0), ..BodyDef::default() });
     let resting = body(BodyDef { kind: BodyKind::Static, ..BodyDef::default() });
     let star = world.create_attractor(Attractor { position: at(50.0, 0.0), mu: num("5") }).expect("accepted");
@@ -62,15 +73,49 @@ macro_rules! beyond {
 }
 
 beyond! {
-    Acceleration Angle AngularImpulse AngularVelocity Damping Force Impulse Inertia Length Mass Mu Torque Velocity
+    Acceleration Angle AngularImpulse AngularVelocity Damping Density Force Friction Impulse Inertia Length Mass Mu
+    Restitution Torque Velocity
 }
 
 /// What a value outside its range is answered with.
 fn outside<Q: Quantity>(value: Q) -> String {
-    format!("{} {value} {} is outside {} {}", Q::NAME, Q::UNIT, Q::ACCEPTED, Q::UNIT)
+    let unit = if Q::UNIT.is_empty() { String::new() } else { format!(" {}", Q::UNIT) };
+    format!("{} {value}{unit} is outside {}{unit}", Q::NAME, Q::ACCEPTED)
 }
 
-/// Commands that must be refused, with the exact text.
+/// What colliders cannot be, and bodies with them.
+fn impossible(scene: &Scene) -> Table {
+    let far = num::<Length>("16000.5");
+    let shape = |shape| vec![ColliderDef::new(shape)];
+    let polygon =
+        |vertices: &[(f64, f64)]| shape(Shape::Polygon { vertices: vertices.iter().map(|&(x, y)| at(x, y)).collect() });
+    let of = |colliders| create(BodyDef { colliders, ..BodyDef::default() });
+    let dynamic = scene.dynamic;
+    let gyration = "a radius of gyration of 0.0039999999571";
+    let mut table = vec![
+        (of(shape(Shape::Circle { radius: Length::ZERO })), "colliders[0]: radius 0 m is outside 0.000001 … 16000 m"),
+        (of(shape(Shape::Box { width: num("1"), height: far })), "colliders[0]: height 16000.5 m is outside"),
+        (of(polygon(&[(0.0, 0.0), (1.0, 0.0)])), "colliders[0]: 2 vertices are outside 3 … 8"),
+        (of(polygon(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)])), "colliders[0]: vertex 0 is on the line"),
+        (of(polygon(&[(0.0, 0.0), (2.0, 0.0), (0.5, 0.5), (0.0, 2.0)])), "the polygon is not convex at vertex 2"),
+        (of(vec![ColliderDef { offset: at(16_000.0, 0.0), ..disc(500.0) }]), "the collider reaches 16500.00"),
+        (
+            of(vec![ColliderDef { offset: Vec2::new(far, far), ..disc(1.0) }]),
+            "coordinate 16000.5 m is outside ±16000 m",
+        ),
+    ];
+    let center = Some(Vec2::new(far, Length::ZERO));
+    table.push((create(BodyDef { center, ..BodyDef::default() }), "center coordinate 16000.5 m is outside ±16000 m"));
+    // 4 mm, and the disc reaches 0.5 m.
+    let inertia = num("0.000016");
+    table.push((Command::SetMass { body: dynamic, mass: num("1"), inertia }, gyration));
+    let body =
+        BodyDef { mass: Some(num("1")), inertia: Some(inertia), colliders: vec![disc(0.5)], ..BodyDef::default() };
+    table.push((create(body), gyration));
+    table.into_iter().map(|(command, text)| (command, text.into())).collect()
+}
+
+/// Commands that must be refused, and what is said of them: exactly, or in part.
 type Table = Vec<(Command, String)>;
 
 /// For each value beyond the range, and each way to hold it, the command that holds it.
@@ -79,6 +124,15 @@ fn add<Q: Beyond>(table: &mut Table, commands: impl Fn(Q) -> Vec<Command>) {
     assert!(!values.is_empty());
     for value in values {
         table.extend(commands(value).into_iter().map(|command| (command, outside(value))));
+    }
+}
+
+/// The same for what a collider holds, the second one of its body.
+fn add_collider<Q: Beyond>(table: &mut Table, collider: impl Fn(Q) -> ColliderDef) {
+    for value in Q::beyond() {
+        let colliders = vec![disc(1.0), collider(value)];
+        let command = create(BodyDef { colliders, ..BodyDef::default() });
+        table.push((command, format!("colliders[1]: {}", outside(value))));
     }
 }
 
@@ -137,11 +191,12 @@ fn out_of_range(scene: &Scene) -> Table {
             Command::ApplyTorque { body, torque },
         ]
     });
-    let inertia = def().inertia;
-    add::<Mass>(&mut table, |mass| vec![create(BodyDef { mass, ..def() }), Command::SetMass { body, mass, inertia }]);
-    let mass = def().mass;
+    let (mass, inertia) = (num("1"), num("1"));
+    add::<Mass>(&mut table, |mass| {
+        vec![create(BodyDef { mass: Some(mass), ..def() }), Command::SetMass { body, mass, inertia }]
+    });
     add::<Inertia>(&mut table, |inertia| {
-        vec![create(BodyDef { inertia, ..def() }), Command::SetMass { body, mass, inertia }]
+        vec![create(BodyDef { inertia: Some(inertia), ..def() }), Command::SetMass { body, mass, inertia }]
     });
     add::<Damping>(&mut table, |rate| {
         vec![
@@ -151,6 +206,15 @@ fn out_of_range(scene: &Scene) -> Table {
             Command::SetDamping { body, linear: Damping::ZERO, angular: rate },
         ]
     });
+    let collider = COLLIDER;
+    add::<Restitution>(&mut table, |restitution| {
+        vec![Command::SetSurface { collider, restitution, friction: num("0") }]
+    });
+    add::<Friction>(&mut table, |friction| vec![Command::SetSurface { collider, restitution: num("0"), friction }]);
+    add_collider(&mut table, |restitution: Restitution| ColliderDef { restitution, ..disc(1.0) });
+    add_collider(&mut table, |friction: Friction| ColliderDef { friction, ..disc(1.0) });
+    add_collider(&mut table, |density: Density| ColliderDef { density, ..disc(1.0) });
+    add_collider(&mut table, |angle: Angle| ColliderDef { angle, ..disc(1.0) });
     add::<Mu>(&mut table, |mu| {
         let attractor = Attractor { position: at(0.0, 0.0), mu };
         vec![
@@ -174,6 +238,19 @@ fn out_of_range(scene: &Scene) -> Table {
 /// Every command about a body or an attractor that is gone, or never was.
 fn stale(scene: &Scene) -> Table {
     let mut table = Table::new();
+    for collider in [
+        ColliderId { index: 0, ..COLLIDER },
+        ColliderId { index: 2, ..COLLIDER },
+        ColliderId { generation: 1, ..COLLIDER },
+    ] {
+        let (restitution, friction) = (num("0"), num("0"));
+        for command in [
+            Command::SetSurface { collider, restitution, friction },
+            Command::SetFilter { collider, filter: Filter::default() },
+        ] {
+            table.push((command, format!("there is no collider {}v{}", collider.index, collider.generation)));
+        }
+    }
     let never = BodyId { index: 1000, generation: 0 };
     let to_come = BodyId { index: scene.dynamic.index, generation: scene.dynamic.generation + 1 };
     for body in [scene.gone, never, to_come] {
@@ -344,9 +421,7 @@ fn refused(mut world: World, table: Table) {
         let shown = format!("{command:?}");
         let shown: String = shown.chars().take(200).collect();
         let Err(error) = world.apply(command) else { panic!("{shown} is accepted") };
-        if !text.is_empty() {
-            assert_eq!(error.to_string(), text, "{shown}");
-        }
+        assert!(error.to_string().contains(&text), "{shown}: {error}");
         assert_eq!(world.hash(), hash, "{shown}");
         assert_eq!(world.save(), save, "{shown}");
     }
@@ -366,6 +441,37 @@ fn fr_verify_physical_constraints_values_beyond_their_range_change_nothing() {
     let table = out_of_range(&scene);
     println!("{} commands with a value one unit beyond its range", table.len());
     refused(scene.world, table);
+}
+
+#[test]
+fn fr_verify_physical_constraints_impossible_colliders_change_nothing() {
+    let scene = scene();
+    let table = impossible(&scene);
+    refused(scene.world, table);
+}
+
+#[test]
+fn a_body_of_too_little_inertia_may_lie_still() {
+    let mut world = world(0.0, 0.0);
+    let thin = BodyDef {
+        mass: Some(num("1")),
+        inertia: Some(num("0.000016")),
+        colliders: vec![disc(0.5)],
+        ..BodyDef::default()
+    };
+    let resting = world.create_body(&BodyDef { kind: BodyKind::Static, ..thin.clone() }).expect("it does not turn");
+    let fixed = world.create_body(&BodyDef { fixed_rotation: true, ..thin.clone() }).expect("it does not turn");
+    let hash = world.hash();
+    let gyration = |error| matches!(error, CommandError::Body(BodyError::Gyration { .. }));
+    assert!(gyration(world.set_kind(resting, BodyKind::Dynamic).expect_err("it would turn")));
+    assert!(gyration(world.set_fixed_rotation(fixed, false).expect_err("it would turn")));
+    assert_eq!(world.hash(), hash);
+    // A sensor collides with nothing, and needs no inertia.
+    let colliders = vec![ColliderDef { sensor: true, ..disc(0.5) }];
+    world.create_body(&BodyDef { colliders, ..thin }).expect("it only senses");
+    let error = BodyDef { colliders: vec![disc(0.0)], ..BodyDef::default() }.check().expect_err("no disc");
+    let radius = ShapeError::Size { name: "radius", value: Length::ZERO };
+    assert_eq!(error, BodyError::Collider { index: 0, error: radius });
 }
 
 #[test]
@@ -462,7 +568,7 @@ fn errors_carry_the_value_and_the_limit() {
     assert_eq!(error, CommandError::InputTooLong { length: INPUT_MAX as u64 + 1 });
     scene.world.input(vec![0; INPUT_MAX]).expect("just short enough");
     // A `BodyDef` can be asked before there is a world.
-    let error = BodyDef { mass: Mass::from_bits(-1), ..BodyDef::default() }.check().expect_err("negative");
+    let error = BodyDef { mass: Some(Mass::from_bits(-1)), ..BodyDef::default() }.check().expect_err("negative");
     assert_eq!(error.to_string(), outside(Mass::from_bits(-1)));
     // A μ that does not fit the widest integer of messages is refused all the same.
     let mu = Mu::from_bits(u128::MAX);
@@ -485,6 +591,11 @@ fn fr_verify_physical_constraints_worlds() {
         assert_eq!(error.to_string(), format!("substeps {substeps} is outside 1 … 64"));
     }
     let low = Acceleration::from_bits(i64::MIN);
+    for unit_shift in [11, u32::MAX] {
+        let error = new(WorldDef { unit_shift, ..WorldDef::default() }).expect_err("outside");
+        assert_eq!(error, ConfigError::UnitShift { value: unit_shift });
+        assert_eq!(error.to_string(), format!("unit_shift {unit_shift} is outside 0 … 10"));
+    }
     for gravity in either(low) {
         let error = new(WorldDef { gravity, ..WorldDef::default() }).expect_err("outside");
         assert_eq!(error.to_string(), outside(low));
@@ -494,10 +605,15 @@ fn fr_verify_physical_constraints_worlds() {
     }
 }
 
+/// A body of 1 kg whose every value is given, as [`tamias2d::Body::def`] gives it.
+fn explicit() -> BodyDef {
+    BodyDef { mass: Some(num("1")), inertia: Some(num("1")), center: Some(at(0.0, 0.0)), ..BodyDef::default() }
+}
+
 /// Bodies at the edges of what is accepted, each alone at it and all together.
 fn edges() -> Vec<BodyDef> {
     let mut defs = Vec::new();
-    let def = || BodyDef { mass: num("1"), ..BodyDef::default() };
+    let def = explicit;
     for ends in [[Length::MIN, Length::MAX], [Length::MAX, Length::MIN]] {
         defs.push(BodyDef { position: Vec2::new(ends[0], ends[1]), ..def() });
     }
@@ -517,11 +633,11 @@ fn edges() -> Vec<BodyDef> {
     }
     for mass in [Mass::MIN, Mass::MAX] {
         for inertia in [Inertia::MIN, Inertia::MAX] {
-            defs.push(BodyDef { mass, inertia, ..def() });
+            defs.push(BodyDef { mass: Some(mass), inertia: Some(inertia), ..def() });
             for rate in [Damping::from_bits(1), Damping::MAX] {
                 defs.push(BodyDef {
-                    mass,
-                    inertia,
+                    mass: Some(mass),
+                    inertia: Some(inertia),
                     linear_damping: rate,
                     angular_damping: rate,
                     velocity: Vec2::new(Velocity::MAX, Velocity::MIN),
@@ -533,10 +649,10 @@ fn edges() -> Vec<BodyDef> {
     }
     // The greatest accelerations: 32 767.5 m/s² and rad/s² of the lightest and of the heaviest.
     for (mass, force) in [("0.000001", 0.0327675), ("2100000000", 2.1e9 * 32_767.5)] {
-        defs.push(BodyDef { mass: num(mass), force: newtons(force, -force), ..BodyDef::default() });
+        defs.push(BodyDef { mass: Some(num(mass)), force: newtons(force, -force), ..def() });
     }
-    defs.push(BodyDef { inertia: Inertia::MAX, torque: Torque::MAX, ..def() });
-    defs.push(BodyDef { inertia: Inertia::MIN, torque: num("3.27675e-8"), ..def() });
+    defs.push(BodyDef { inertia: Some(Inertia::MAX), torque: Torque::MAX, ..def() });
+    defs.push(BodyDef { inertia: Some(Inertia::MIN), torque: num("3.27675e-8"), ..def() });
     for mu in [Mu::from_bits(1), Mu::MAX] {
         defs.push(BodyDef { mu, position: at(12.0, 5.0), ..def() });
     }
@@ -633,7 +749,7 @@ fn a_change_of_kind_takes_what_the_new_kind_does_not_have() {
         linear_damping: num("7"),
         angular_damping: num("8"),
         mu: num("9"),
-        ..BodyDef::default()
+        ..explicit()
     };
     let mut world = world(0.0, -9.8);
     let id = world.create_body(&def).expect("accepted");

@@ -7,8 +7,19 @@ use std::fs;
 use std::path::Path;
 
 /// The modules of the library, lowest floor first. A module sees its own floor and those below.
-const FLOORS: [&[&str]; 8] =
-    [&["num", "geom"], &["store"], &["body"], &["motion"], &["world"], &["snapshot"], &["replay"], &["scene"]];
+const FLOORS: [&[&str]; 11] = [
+    &["num", "geom"],
+    &["store"],
+    &["shape"],
+    &["body"],
+    &["motion", "broad", "narrow"],
+    &["contact"],
+    &["solver"],
+    &["world"],
+    &["snapshot"],
+    &["replay"],
+    &["scene"],
+];
 /// The one file with floats.
 const FLOAT_FILE: &str = "num/float.rs";
 /// The one file that knows the codec's library.

@@ -103,7 +103,7 @@ fn two_bodies_orbit_their_common_centre() {
     let mut world = world(0.0, 0.0);
     // Masses 1 and 3, circular, 10 m apart, once in 10 s: they share μ as they share mass.
     let defs = [(1.0, -7.5, -7.5), (3.0, 2.5, 2.5)].map(|(share, x, speed)| BodyDef {
-        mass: num(if share == 1.0 { "1" } else { "3" }),
+        mass: Some(num(if share == 1.0 { "1" } else { "3" })),
         mu: Mu::from_f64(MU * share / 4.0).expect("in range"),
         position: at(x, 0.0),
         velocity: vel(0.0, speed * TAU / 10.0),
@@ -204,7 +204,9 @@ fn a_body_exactly_at_the_attractor_is_not_pulled() {
         let mut world = World::new(&WorldDef { integrator, ..WorldDef::default() }).expect("accepted");
         let position = at(3.25, -7.5);
         world.create_attractor(Attractor { position, mu: num("2e21") }).expect("accepted");
-        let def = BodyDef { position, mu: num("2e21"), ..BodyDef::default() };
+        let (one, center) =
+            (BodyDef { mass: Some(num("1")), inertia: Some(num("1")), ..BodyDef::default() }, at(0.0, 0.0));
+        let def = BodyDef { position, mu: num("2e21"), center: Some(center), ..one };
         let id = world.create_body(&def).expect("accepted");
         // Nor by a body at the same place, nor by itself.
         let twin = world.create_body(&def).expect("accepted");

@@ -3,15 +3,15 @@
 
 mod common;
 
-use common::{Storm, acc, at, measure, newton_seconds, newtons, num, run, vel, world};
+use common::{Storm, acc, at, disc, measure, newton_seconds, newtons, num, run, vel, world};
 use proptest::prelude::{ProptestConfig, any, prop_assert_eq, proptest};
 use std::cell::RefCell;
 use std::io::{self, Write};
 use std::rc::Rc;
 use tamias2d::replay::{Player, REPLAY_VERSION, Recorder, ReplayError, Summary};
 use tamias2d::{
-    Angle, Attractor, AttractorId, BodyDef, BodyId, BodyKind, Command, CommandError, Commands, DecodeError, LAW, Vec2,
-    World, WorldDef,
+    Angle, Attractor, AttractorId, BodyDef, BodyId, BodyKind, ColliderId, Command, CommandError, Commands, DecodeError,
+    Filter, LAW, Vec2, World, WorldDef,
 };
 use twox_hash::XxHash3_64;
 
@@ -67,7 +67,8 @@ fn start() -> World {
     let mut world = world(0.0, -9.8);
     let gone = world.create_body(&BodyDef::default()).expect("accepted");
     for i in 0..2 {
-        let def = BodyDef { position: at(f64::from(i), 0.0), velocity: vel(1.0, 2.0), ..BodyDef::default() };
+        let colliders = vec![disc(0.75)];
+        let def = BodyDef { position: at(f64::from(i), 0.0), velocity: vel(1.0, 2.0), colliders, ..BodyDef::default() };
         world.create_body(&def).expect("accepted");
     }
     world.destroy_body(gone).expect("accepted");
@@ -111,7 +112,7 @@ proptest! {
     /// What was recorded from any world on plays with the same hash at every tick.
     #[test]
     fn what_is_recorded_plays(seed in any::<u64>(), before in 0u64..20, ticks in 0u64..80, tail in 0u64..4) {
-        let mut storm = Storm::new(seed, 1e6);
+        let mut storm = Storm::solid(seed, 1e6);
         let mut world = world(0.0, -9.8);
         for _ in 0..before {
             storm.tick(&mut world, 3);
@@ -149,6 +150,7 @@ proptest! {
 /// One command of each kind, in an order in which all are accepted.
 fn one_of_each() -> Vec<Command> {
     let (body, id) = (ONE, AttractorId { index: 0, generation: 0 });
+    let collider = ColliderId { index: 0, generation: 0 };
     let star = Attractor { position: at(7.0, 7.0), mu: num("3") };
     vec![
         Command::CreateBody { def: BodyDef { position: at(4.0, 4.0), user_data: 7, ..BodyDef::default() } },
@@ -174,6 +176,8 @@ fn one_of_each() -> Vec<Command> {
         Command::SetAttractor { id, attractor: star },
         Command::DestroyAttractor { id },
         Command::SetGravity { gravity: acc(1.0, 2.0) },
+        Command::SetSurface { collider, restitution: num("0.5"), friction: num("0.25") },
+        Command::SetFilter { collider, filter: Filter { category: 2, mask: 5 } },
         Command::ClearStatus,
         Command::Input { bytes: vec![1, 2, 3, 0, 255] },
         Command::Input { bytes: vec![] },
@@ -191,7 +195,7 @@ fn no_command_is_missed() {
             kinds.push(kind);
         }
     }
-    assert_eq!(kinds.len(), 24, "every variant of `Command` is here");
+    assert_eq!(kinds.len(), 26, "every variant of `Command` is here");
     // Each before its own tick, and all before one.
     let mut game = Recorder::new(start(), Vec::new()).expect("it can be written");
     for command in &commands {
@@ -225,6 +229,7 @@ fn no_command_is_missed() {
 #[test]
 fn the_methods_are_recorded_as_the_commands_are() {
     let (body, id) = (ONE, AttractorId { index: 0, generation: 0 });
+    let collider = ColliderId { index: 0, generation: 0 };
     let star = Attractor { position: at(7.0, 7.0), mu: num("3") };
     let mut game = Recorder::new(start(), Vec::new()).expect("it can be written");
     game.create_body(&BodyDef { position: at(4.0, 4.0), user_data: 7, ..BodyDef::default() }).expect("accepted");
@@ -250,6 +255,8 @@ fn the_methods_are_recorded_as_the_commands_are() {
     game.set_attractor(id, star).expect("accepted");
     game.destroy_attractor(id).expect("accepted");
     game.set_gravity(acc(1.0, 2.0)).expect("accepted");
+    game.set_surface(collider, num("0.5"), num("0.25")).expect("accepted");
+    game.set_filter(collider, Filter { category: 2, mask: 5 }).expect("accepted");
     game.clear_status().expect("accepted");
     game.input(vec![1, 2, 3, 0, 255]).expect("accepted");
     game.input(vec![]).expect("accepted");
@@ -639,13 +646,13 @@ fn a_command_that_is_refused_or_is_none_is_named() {
     let file = Forge::new(60).world(&start()).idle(hash).with_commands(0x03, 0, &commands).end(2);
     let refused = error(&file);
     assert!(
-        matches!(refused, ReplayError::Refused { tick: 2, index: 1, error: CommandError::NoSuchBody(id) } if id == stale)
+        matches!(refused, ReplayError::Refused { tick: 2, index: 1, ref error } if **error == CommandError::NoSuchBody(stale))
     );
     assert_eq!(refused.to_string(), "replay diverged before tick 2: command 1 is refused, there is no body 0v0");
 
     let offset = (Forge::new(60).world(&start()).idle(hash).bytes.len()) as u64;
     for (commands, want) in [
-        (vec![24], DecodeError::Invalid { offset: 8, field: "command", reason: "has an unknown tag" }),
+        (vec![26], DecodeError::Invalid { offset: 8, field: "command", reason: "has an unknown tag" }),
         (vec![255], DecodeError::Invalid { offset: 8, field: "command", reason: "has an unknown tag" }),
         (set_user_data(TWO, 1)[..16].to_vec(), DecodeError::Truncated { offset: 17, field: "user_data" }),
     ] {

@@ -1,5 +1,6 @@
 //! The table of bodies: hot state in columns, cold data in slots.
 
+use super::colliders::center_at;
 use super::def::{BodyData, BodyDef};
 use crate::geom::Vec2;
 use crate::num::{Angle, AngularVelocity, Length, Quantity, Velocity};
@@ -88,12 +89,13 @@ table! {
 }
 
 impl Bodies {
-    /// Adds a body that [`BodyDef::check`] accepts. The caller has checked that the arena has room.
-    pub(crate) fn insert(&mut self, def: &BodyDef) -> BodyId {
-        let (index, generation) = self.cold.insert(def.data());
+    /// Adds a body with the row that its definition gives. The caller has checked that the arena has room.
+    pub(crate) fn insert(&mut self, def: &BodyDef, data: BodyData) -> BodyId {
+        let center = center_at(def.position, data.center, def.angle);
+        let (index, generation) = self.cold.insert(data);
         self.grow();
         let slot = index as usize;
-        self.set_position(slot, def.position);
+        self.set_position(slot, center);
         self.angle.set(slot, def.angle);
         self.set_velocity(slot, def.velocity);
         self.omega.set(slot, def.angular_velocity);

@@ -1,9 +1,12 @@
 //! What a body is made of, and what of it is accepted.
 
+use super::colliders::center_at;
 use crate::geom::Vec2;
 use crate::num::{
-    Angle, AngularVelocity, Damping, Force, Inertia, Length, Mass, Mu, Quantity, RangeError, Torque, Velocity,
+    Angle, AngularVelocity, Damping, Force, Inertia, Length, Mass, Mu, Quantity, RangeError, Torque, Velocity, mul_div,
+    sqrt,
 };
+use crate::shape::{ColliderDef, MassData, ShapeError};
 use crate::store::{Row, record, record_enum};
 use core::fmt;
 use serde::{Deserialize, Serialize};
@@ -22,13 +25,13 @@ pub enum BodyKind {
 
 record_enum!(BodyKind { 0 => Static {}, 1 => Kinematic {}, 2 => Dynamic {} });
 
-/// A body to create. `BodyDef::default()` is a dynamic body of 1 kg and 1 kg m² at rest at the origin.
+/// A body to create. `BodyDef::default()` is a dynamic body at rest at the origin, without colliders.
 #[derive(Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BodyDef {
     /// What moves it.
     pub kind: BodyKind,
-    /// Its origin, which is its centre of mass.
+    /// Its origin.
     pub position: Vec2<Length>,
     /// Its orientation, unwrapped; [`Angle::from_radians`] takes radians in [0, 2π].
     pub angle: Angle,
@@ -40,10 +43,14 @@ pub struct BodyDef {
     pub force: Vec2<Force>,
     /// A torque that acts each tick until it is set anew; zero unless the body is dynamic and may turn.
     pub torque: Torque,
-    /// Kept for every kind; what it means, it means while the body is dynamic.
-    pub mass: Mass,
-    /// About the centre of mass; as `mass`.
-    pub inertia: Inertia,
+    /// Kept for every kind; what it means, it means while the body is dynamic. `None`: that of its colliders by their
+    /// densities, or 1 kg.
+    pub mass: Option<Mass>,
+    /// About the centre of mass; as `mass`. `None`: that of its colliders, scaled to its mass, or mass times 1 m².
+    pub inertia: Option<Inertia>,
+    /// The centre of mass, in the body's axes from its origin. `None`: the origin when mass and inertia are both given,
+    /// else that of its colliders, or the origin.
+    pub center: Option<Vec2<Length>>,
     /// Whether forces do not turn the body.
     pub fixed_rotation: bool,
     /// The rate at which the velocity decays, v(t) = v₀·exp(−c·t) without forces.
@@ -54,6 +61,8 @@ pub struct BodyDef {
     pub mu: Mu,
     /// The game's own; stored, hashed, not looked at.
     pub user_data: u64,
+    /// What of it collides. A body without colliders only moves.
+    pub colliders: Vec<ColliderDef>,
 }
 
 impl Default for BodyDef {
@@ -66,13 +75,15 @@ impl Default for BodyDef {
             angular_velocity: AngularVelocity::ZERO,
             force: Vec2::default(),
             torque: Torque::ZERO,
-            mass: Mass::from_bits(1 << 64),
-            inertia: Inertia::from_bits(1 << 64),
+            mass: None,
+            inertia: None,
+            center: None,
             fixed_rotation: false,
             linear_damping: Damping::ZERO,
             angular_damping: Damping::ZERO,
             mu: Mu::ZERO,
             user_data: 0,
+            colliders: Vec::new(),
         }
     }
 }
@@ -87,11 +98,13 @@ record!(BodyDef {
     torque,
     mass,
     inertia,
+    center,
     fixed_rotation,
     linear_damping,
     angular_damping,
     mu,
     user_data,
+    colliders,
 });
 
 /// Why a body cannot have a value.
@@ -111,6 +124,26 @@ pub enum BodyError {
         /// The quantity's name.
         quantity: &'static str,
     },
+    /// One of its colliders cannot be like this.
+    Collider {
+        /// Which, from 0, in the order given.
+        index: u32,
+        /// Why.
+        error: ShapeError,
+    },
+    /// A moment of inertia that does not fit what collides: the radius of gyration √(I/m) of a body that may turn must
+    /// be at least 1/120 of the distance of its farthest collider's farthest point from the centre of mass.
+    Gyration {
+        /// The radius of gyration.
+        radius: Length,
+        /// That farthest distance.
+        reach: Length,
+    },
+    /// A centre of mass farther than 16 000 m from the origin.
+    Center {
+        /// The coordinate.
+        value: Length,
+    },
 }
 
 impl fmt::Display for BodyError {
@@ -128,6 +161,11 @@ impl fmt::Display for BodyError {
             BodyError::FixedRotation { quantity } => {
                 write!(f, "a body with fixed rotation has no {quantity}")
             }
+            BodyError::Collider { index, error } => write!(f, "colliders[{index}]: {error}"),
+            BodyError::Gyration { radius, reach } => {
+                write!(f, "a radius of gyration of {radius} m is below 1/120 of the colliders' reach of {reach} m")
+            }
+            BodyError::Center { value } => write!(f, "center coordinate {value} m is outside ±16000 m"),
         }
     }
 }
@@ -147,6 +185,12 @@ pub(crate) struct BodyData {
     pub(crate) fixed_rotation: bool,
     pub(crate) mass: Mass,
     pub(crate) inertia: Inertia,
+    /// The centre of mass from the origin, in the body's axes.
+    pub(crate) center: Vec2<Length>,
+    /// The greatest distance of a point of its colliders, sensors excepted, from the centre of mass; 0 without any.
+    pub(crate) reach: Length,
+    /// The slot of its first collider.
+    pub(crate) first: Option<u32>,
     pub(crate) force: Vec2<Force>,
     pub(crate) torque: Torque,
     pub(crate) linear_damping: Damping,
@@ -160,6 +204,9 @@ record!(BodyData {
     fixed_rotation,
     mass,
     inertia,
+    center,
+    reach,
+    first,
     force,
     torque,
     linear_damping,
@@ -173,27 +220,78 @@ impl Row for BodyData {}
 impl BodyDef {
     /// Whether a body can be like this.
     pub fn check(&self) -> Result<(), BodyError> {
+        self.data().map(drop)
+    }
+
+    /// The cold row of the body, without its colliders, if a body can be like this.
+    pub(crate) fn data(&self) -> Result<BodyData, BodyError> {
         self.position.checked()?;
         self.angle.checked()?;
         self.velocity.checked()?;
         self.angular_velocity.checked()?;
-        self.data().check(self.velocity, self.angular_velocity)
-    }
-
-    pub(crate) fn data(&self) -> BodyData {
-        BodyData {
+        for (index, collider) in self.colliders.iter().enumerate() {
+            collider.check().map_err(|error| BodyError::Collider { index: index as u32, error })?;
+        }
+        let (mass, inertia, center) = self.resolved()?;
+        let solid = self.colliders.iter().filter(|collider| !collider.sensor);
+        let reach = solid.map(|c| c.shape.outline(c.offset, c.angle, center).reach).max().unwrap_or(0);
+        let data = BodyData {
             kind: self.kind,
             fixed_rotation: self.fixed_rotation,
-            mass: self.mass,
-            inertia: self.inertia,
+            mass,
+            inertia,
+            center,
+            reach: Length::from_bits(reach),
+            first: None,
             force: self.force,
             torque: self.torque,
             linear_damping: self.linear_damping,
             angular_damping: self.angular_damping,
             mu: self.mu,
             user_data: self.user_data,
-        }
+        };
+        data.check(self.velocity, self.angular_velocity)?;
+        center_at(self.position, center, self.angle).checked()?;
+        Ok(data)
     }
+
+    /// Mass, inertia and centre of mass: what is given, and the rest from the colliders.
+    fn resolved(&self) -> Result<(Mass, Inertia, Vec2<Length>), BodyError> {
+        let solid = MassData::of(&self.colliders);
+        let any = solid.mass > 0;
+        let mass = match self.mass {
+            Some(mass) => mass,
+            None if any => Mass::from_bits(solid.mass),
+            None => Mass::from_bits(1 << 64),
+        };
+        mass.checked()?;
+        let center = match (self.center, self.mass, self.inertia) {
+            (Some(center), _, _) => center,
+            (None, Some(_), Some(_)) => Vec2::default(),
+            (None, _, _) => solid.center,
+        };
+        for value in [center.x, center.y] {
+            if value.to_bits().unsigned_abs() > CENTER_MAX {
+                return Err(BodyError::Center { value });
+            }
+        }
+        let inertia = match self.inertia {
+            Some(inertia) => inertia,
+            // Of the same distribution of mass: I is in the ratio of the masses.
+            None if any => Inertia::from_bits(mul_div(solid.about(center), mass.to_bits(), solid.mass)),
+            None => Inertia::from_bits(mass.to_bits()),
+        };
+        inertia.checked()?;
+        Ok((mass, inertia, center))
+    }
+}
+
+/// 16 000 m.
+const CENTER_MAX: u64 = 16_000 << 32;
+
+/// The radius of gyration √(I/m) in Q32 m; saturates at 2³¹·⁵ m.
+pub(crate) fn gyration(mass: Mass, inertia: Inertia) -> u64 {
+    sqrt(mul_div(inertia.to_bits(), 1 << 64, mass.to_bits()).unsigned_abs())
 }
 
 impl BodyData {
@@ -204,6 +302,16 @@ impl BodyData {
     /// Whether forces turn it.
     pub(crate) fn turns(&self) -> bool {
         self.is_dynamic() && !self.fixed_rotation
+    }
+
+    /// Whether its inertia fits its colliders, were it of this kind.
+    pub(crate) fn check_gyration(&self, kind: BodyKind, fixed_rotation: bool) -> Result<(), BodyError> {
+        let radius = gyration(self.mass, self.inertia);
+        let turns = kind == BodyKind::Dynamic && !fixed_rotation;
+        if turns && radius.saturating_mul(120) < self.reach.to_bits().unsigned_abs() {
+            return Err(BodyError::Gyration { radius: Length::from_bits(radius as i64), reach: self.reach });
+        }
+        Ok(())
     }
 
     /// Ranges of its own values, and what its kind allows of them and of its velocities.
@@ -234,6 +342,6 @@ impl BodyData {
         if *fixed_rotation && *torque != Torque::ZERO {
             return Err(BodyError::FixedRotation { quantity: Torque::NAME });
         }
-        Ok(())
+        self.check_gyration(*kind, *fixed_rotation)
     }
 }

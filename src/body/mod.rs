@@ -1,10 +1,12 @@
-//! Bodies: pure data. It moves nothing.
+//! Bodies and their colliders: pure data. It moves nothing.
 
 mod attractor;
 mod bodies;
+mod colliders;
 mod def;
 
 pub use attractor::Attractor;
 pub(crate) use bodies::Bodies;
-pub(crate) use def::BodyData;
+pub(crate) use colliders::{Collider, Colliders, center_at, origin_of};
+pub(crate) use def::{BodyData, gyration};
 pub use def::{BodyDef, BodyError, BodyKind};

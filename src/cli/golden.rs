@@ -13,6 +13,16 @@ const SCENES: &[(&str, &str)] = &[
     ("spin", include_str!("../../replays/spin.json")),
     ("orbit", include_str!("../../replays/orbit.json")),
     ("everything", include_str!("../../replays/everything.json")),
+    ("tc10c", include_str!("../../replays/tc10c.json")),
+    ("tc11c", include_str!("../../replays/tc11c.json")),
+    ("pyramid55", include_str!("../../replays/pyramid55.json")),
+    ("pusher", include_str!("../../replays/pusher.json")),
+    ("sensors", include_str!("../../replays/sensors.json")),
+    ("churn", include_str!("../../replays/churn.json")),
+    ("pixels", include_str!("../../replays/pixels.json")),
+    ("tumbler", include_str!("../../replays/tumbler.json")),
+    ("bouncers", include_str!("../../replays/bouncers.json")),
+    ("pile300", include_str!("../../replays/pile300.json")),
 ];
 
 fn parse(name: &str, text: &str) -> Result<Scene, Failure> {

@@ -27,7 +27,7 @@ impl Info {
         let kinds = [BodyKind::Dynamic, BodyKind::Kinematic, BodyKind::Static]
             .map(|kind| world.bodies().filter(|body| body.kind() == kind).count());
         let [dynamic, kinematic, fixed] = kinds;
-        let attractors = world.attractors().count();
+        let (attractors, colliders) = (world.attractors().count(), world.colliders().count());
         let (version, law) = (tamias2d::replay::REPLAY_VERSION, tamias2d::LAW);
         let (rate, substeps) = (config.tick_rate, config.substeps);
         let start = world.hash();
@@ -39,8 +39,8 @@ impl Info {
             writeln!(
                 out,
                 "{{\"format\":{version},\"law\":{law},\"tick_rate\":{rate},\"substeps\":{substeps},\"dynamic\":{dynamic},\
-                 \"kinematic\":{kinematic},\"static\":{fixed},\"attractors\":{attractors},\"ticks\":{ticks},\
-                 \"commands\":{commands},\"first_hash\":\"{start:016x}\",\"last_hash\":\"{end:016x}\"}}"
+                 \"kinematic\":{kinematic},\"static\":{fixed},\"colliders\":{colliders},\"attractors\":{attractors},\
+                 \"ticks\":{ticks},\"commands\":{commands},\"first_hash\":\"{start:016x}\",\"last_hash\":\"{end:016x}\"}}"
             )?;
             return Ok(());
         }
@@ -50,7 +50,8 @@ impl Info {
         writeln!(out, "gravity     ({}, {}) m/s²", rounded(config.gravity.x, 6), rounded(config.gravity.y, 6))?;
         writeln!(
             out,
-            "at start    {dynamic} dynamic, {kinematic} kinematic, {fixed} static bodies, {attractors} attractors"
+            "at start    {dynamic} dynamic, {kinematic} kinematic, {fixed} static bodies, {colliders} colliders, \
+             {attractors} attractors"
         )?;
         writeln!(out, "commands    {commands}")?;
         writeln!(out, "hashes      {start:016x} at tick 0, {end:016x} at the end")?;

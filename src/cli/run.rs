@@ -1,36 +1,45 @@
 //! `tamias2d run`
 
-use super::table::{Format, Table};
+use super::table::{Columns, Format, Table};
 use super::{Failure, progress, read_scene, say};
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 use tamias2d::replay::Recorder;
-use tamias2d::scene::{Scene, Script};
-use tamias2d::{Commands, StatusEntry, World};
+use tamias2d::scene::{Scene, Script, Stage};
+use tamias2d::{StatusEntry, World};
 
 /// Run a scene and print where its bodies are.
 ///
 /// One row per body and tick, from tick 0 on: tick, time in s, body (its name, or its index), x and y in m, angle in
 /// radians in [0, 2π), turns (the unwrapped angle), vx and vy in m/s, omega in rad/s. x, y, turns, vx, vy and omega
 /// are printed exactly, with all their digits; time and angle to 15 decimals.
+///
+/// With --events instead one row per event, in the order of the engine: tick (after its step), event (contact_begin,
+/// contact_end, sensor_begin, sensor_end), and the two colliders, each as its body and its index in that body's list,
+/// from 0. A body that was destroyed is still named; what it touched ends in the step after.
 #[derive(clap::Args)]
 #[command(after_long_help = "\
 A scene:
-  { \"name\": \"tc2\", \"tick_rate\": 60, \"substeps\": 4, \"gravity\": [0, -9.8],
+  { \"name\": \"tc2\", \"tick_rate\": 60, \"gravity\": [0, -9.8],
     \"bodies\": [
-      { \"name\": \"left\", \"position\": [20, 20], \"velocity\": [0, 5], \"mass\": 10, \"inertia\": 15 },
-      { \"name\": \"floor\", \"kind\": \"static\" } ],
+      { \"name\": \"left\", \"position\": [20, 20], \"velocity\": [0, 5], \"mass\": 10, \"inertia\": 15,
+        \"colliders\": [ { \"box\": [2, 1], \"restitution\": 0.5 } ] },
+      { \"name\": \"floor\", \"kind\": \"static\", \"colliders\": [ { \"box\": [100, 2], \"friction\": 0.8 } ] } ],
     \"attractors\": [ { \"position\": [0, 0], \"mu\": 1000 } ],
     \"commands\": [
       { \"tick\": 30, \"do\": { \"apply_impulse\": { \"body\": \"left\", \"impulse\": [0, 5] } } } ] }
 
 Only name, tick_rate and bodies are needed; other keys are refused. SI units, angles in radians.
   scene      name, tick_rate, bodies, substeps, integrator (forest_ruth, symplectic_euler),
-             gravity, attractors, commands, ticks (length of a recording), about
+             gravity, unit_shift (contacts are solved in units of 2^k m: about 6 for pixels),
+             attractors, commands, ticks (length of a recording), about
   body       name, kind (dynamic, kinematic, static), position, angle (0 to 2π), velocity,
-             angular_velocity, force, torque, mass, inertia, fixed_rotation, linear_damping,
-             angular_damping, mu, user_data, colliders (an empty list in this version)
+             angular_velocity, force, torque, mass, inertia, center (of mass), fixed_rotation,
+             linear_damping, angular_damping, mu, user_data, colliders
+  collider   one of box ([width, height]), polygon (3 to 8 vertices, convex) and circle (radius);
+             offset, angle, density, restitution (0 to 1), friction, filter (category, mask),
+             sensor (true: it only reports overlaps)
   attractor  name, position, mu
 
 Commands, before the step of their tick; \"body\" and \"attractor\" are a name or an index:
@@ -39,7 +48,8 @@ Commands, before the step of their tick; \"body\" and \"attractor\" are a name o
   (fixed), set_damping (linear, angular), set_mu, set_user_data, apply_force (force, point),
   apply_torque, apply_impulse (impulse, point), apply_angular_impulse (impulse),
   create_attractor (an attractor), set_attractor, destroy_attractor, set_gravity,
-  clear_status, input (text)")]
+  set_surface (collider, restitution, friction) and set_filter (collider, category, mask), where
+  collider is an index in the body's list, the first if left out; clear_status, input (text)")]
 pub(crate) struct Run {
     /// The scene, a JSON file; - is standard input. See `tamias2d scenes` for examples
     scene: String,
@@ -49,6 +59,9 @@ pub(crate) struct Run {
     /// Print every K-th tick only
     #[arg(long, value_name = "K", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     every: u64,
+    /// Print what begins and ends to touch instead of where bodies are
+    #[arg(long, conflicts_with = "every")]
+    events: bool,
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Csv)]
     format: Format,
@@ -82,7 +95,8 @@ impl Run {
 
     fn steps<S: Stage>(&self, mut script: Script<'_>, mut stage: S) -> Result<S, Failure> {
         let out = BufWriter::new(std::io::stdout().lock());
-        let mut table = Table::new(out, self.format, stage.world().config().tick_rate)?;
+        let columns = if self.events { Columns::Events } else { Columns::Bodies };
+        let mut table = Table::new(out, self.format, columns, stage.world().config().tick_rate)?;
         let bar = progress(self.ticks, "ticks");
         for tick in 0..=self.ticks {
             if tick > 0 {
@@ -90,7 +104,11 @@ impl Run {
                 script.apply(tick - 1, &mut stage).map_err(error)?;
                 stage.step();
             }
-            if tick % self.every == 0 {
+            if self.events {
+                for event in stage.world().events() {
+                    table.event(tick, event, &script)?;
+                }
+            } else if tick % self.every == 0 {
                 for body in stage.world().bodies() {
                     table.row(tick, script.label(body.id()), &body)?;
                 }
@@ -111,32 +129,6 @@ fn report_status(scene: &str, world: &World, script: &Script<'_>) {
     for StatusEntry { tick, body, bound } in world.status().entries() {
         let body = script.label(*body);
         say(&format!("{scene}: tick {tick}: body {body} was limited in its {bound}"));
-    }
-}
-
-/// What steps: a world, or a recorder around one.
-pub(crate) trait Stage: Commands {
-    fn world(&self) -> &World;
-    fn step(&mut self);
-}
-
-impl Stage for World {
-    fn world(&self) -> &World {
-        self
-    }
-
-    fn step(&mut self) {
-        World::step(self);
-    }
-}
-
-impl<W: Write> Stage for Recorder<W> {
-    fn world(&self) -> &World {
-        Recorder::world(self)
-    }
-
-    fn step(&mut self) {
-        Recorder::step(self);
     }
 }
 

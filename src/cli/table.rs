@@ -1,16 +1,23 @@
-//! What a body's row looks like, as CSV and as JSON. All numbers are exact or rounded from exact ones.
+//! What the row of a body or an event looks like, as CSV and as JSON. All numbers are exact or rounded from exact ones.
 
 use std::io::{self, Write};
 use tamias2d::num::{Decimal, Quantity};
-use tamias2d::{Angle, Body};
+use tamias2d::scene::Script;
+use tamias2d::{Angle, Body, ColliderId, Event};
 
 /// How rows are written.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Format {
-    /// A header and a line per body and tick.
+    /// A header and a line per row.
     Csv,
     /// A list of objects, one on each line.
     Json,
+}
+
+/// What the rows are.
+pub(crate) enum Columns {
+    Bodies,
+    Events,
 }
 
 /// Writes rows.
@@ -22,10 +29,11 @@ pub(crate) struct Table<W> {
 }
 
 impl<W: Write> Table<W> {
-    pub(crate) fn new(mut out: W, format: Format, tick_rate: u32) -> io::Result<Self> {
-        match format {
-            Format::Csv => writeln!(out, "tick,time,body,x,y,angle,turns,vx,vy,omega")?,
-            Format::Json => write!(out, "[")?,
+    pub(crate) fn new(mut out: W, format: Format, columns: Columns, tick_rate: u32) -> io::Result<Self> {
+        match (format, columns) {
+            (Format::Csv, Columns::Bodies) => writeln!(out, "tick,time,body,x,y,angle,turns,vx,vy,omega")?,
+            (Format::Csv, Columns::Events) => writeln!(out, "tick,event,body_a,collider_a,body_b,collider_b")?,
+            (Format::Json, _) => write!(out, "[")?,
         }
         Ok(Table { out, format, rows: 0, tick_rate })
     }
@@ -47,6 +55,29 @@ impl<W: Write> Table<W> {
                     self.out,
                     "{comma}\n{{\"tick\":{tick},\"time\":{time},\"body\":{label},\"x\":{x},\"y\":{y},\"angle\":{angle},\
                      \"turns\":{turns},\"vx\":{vx},\"vy\":{vy},\"omega\":{omega}}}"
+                )?;
+            }
+        }
+        self.rows += 1;
+        Ok(())
+    }
+
+    pub(crate) fn event(&mut self, tick: u64, event: &Event, script: &Script<'_>) -> io::Result<()> {
+        // The script created every collider of its world.
+        let of = |id: ColliderId| script.collider(id).map_or(("", 0), |(body, index)| (script.label(body), index));
+        let (kind, (body_a, a), (body_b, b)) = (event.kind, of(event.a), of(event.b));
+        match self.format {
+            Format::Csv => {
+                let (body_a, body_b) = (csv_field(body_a), csv_field(body_b));
+                writeln!(self.out, "{tick},{kind},{body_a},{a},{body_b},{b}")?;
+            }
+            Format::Json => {
+                let comma = if self.rows == 0 { "" } else { "," };
+                let (body_a, body_b) = (super::quoted(body_a), super::quoted(body_b));
+                write!(
+                    self.out,
+                    "{comma}\n{{\"tick\":{tick},\"event\":\"{kind}\",\"body_a\":{body_a},\"collider_a\":{a},\
+                     \"body_b\":{body_b},\"collider_b\":{b}}}"
                 )?;
             }
         }

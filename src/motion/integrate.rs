@@ -112,9 +112,12 @@ pub enum Bound {
     AngularVelocity,
     /// An acceleration at ±32 768 m/s² or rad/s².
     Acceleration,
+    /// A speed in a substep with contacts: ±400·2^k m/s along an axis or at the rim of the body, or an eighth of a turn a
+    /// substep.
+    ContactSpeed,
 }
 
-record_enum!(Bound { 0 => Position {}, 1 => Turns {}, 2 => Velocity {}, 3 => AngularVelocity {}, 4 => Acceleration {} });
+record_enum!(Bound { 0 => Position {}, 1 => Turns {}, 2 => Velocity {}, 3 => AngularVelocity {}, 4 => Acceleration {}, 5 => ContactSpeed {} });
 
 impl fmt::Display for Bound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -124,6 +127,7 @@ impl fmt::Display for Bound {
             Bound::Velocity => "velocity",
             Bound::AngularVelocity => "angular velocity",
             Bound::Acceleration => "acceleration",
+            Bound::ContactSpeed => "speed in contact",
         })
     }
 }
@@ -203,7 +207,7 @@ fn drift(bodies: &mut Bodies, drive: &Drive, run: Range<usize>, line: i64, turn:
 
 /// An angle turned further. The fraction of a turn is always exact; the count of whole turns stops at ±32 767, and
 /// whether it had to is the second value.
-fn turn_by(angle: i64, by: i64) -> (i64, bool) {
+pub(crate) fn turn_by(angle: i64, by: i64) -> (i64, bool) {
     const TURN: i64 = 1 << 48;
     const LAST_TURN: i64 = i64::MAX - (TURN - 1);
     match angle.checked_add(by) {

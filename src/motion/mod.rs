@@ -13,4 +13,4 @@ mod span;
 pub(crate) use drive::{Drive, Push, acceleration};
 pub(crate) use gravity::Source;
 pub use integrate::{Bound, Integrator};
-pub(crate) use integrate::{Fault, integrate};
+pub(crate) use integrate::{Fault, integrate, turn_by};

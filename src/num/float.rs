@@ -3,8 +3,8 @@
 
 use super::Decimal;
 use super::quantity::{
-    Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Energy, Force, Impulse, Inertia, Length, Mass, Mu,
-    NumError, Quantity, Radians, RangeError, Torque, Velocity,
+    Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Density, Energy, Force, Friction, Impulse, Inertia,
+    Length, Mass, Mu, NumError, Quantity, Radians, RangeError, Restitution, Torque, Velocity,
 };
 use crate::geom::{Rot, Vec2};
 use fixed::FixedI128;
@@ -71,8 +71,8 @@ fn fixed_checked<F: fixed::traits::Fixed>(value: f64) -> Option<F> {
 }
 
 float! {
-    Acceleration Angle AngularImpulse AngularVelocity Damping Energy Force Impulse Inertia Length Mass Mu Radians
-    Torque Velocity
+    Acceleration Angle AngularImpulse AngularVelocity Damping Density Energy Force Friction Impulse Inertia Length Mass Mu
+    Radians Restitution Torque Velocity
 }
 
 impl<Q: FromF64> Vec2<Q> {

@@ -17,6 +17,9 @@
 //! | [`Impulse`] | `I64F64` | N s | ±1e14 | 5.4e-20 |
 //! | [`AngularImpulse`] | `I64F64` | N m s | ±1e18 | 5.4e-20 |
 //! | [`Damping`] | `I16F48` | 1/s | 0 … 1000 | 3.6e-15 |
+//! | [`Density`] | `I64F64` | kg/m² | 1e-9 … 1e12 | 5.4e-20 |
+//! | [`Restitution`] | `I16F48` | 1 | 0 … 1 | 3.6e-15 |
+//! | [`Friction`] | `I16F48` | 1 | 0 … 100 | 3.6e-15 |
 //! | [`Mu`] | `U72F56` | m³/s² | 0 … 2e21 | 1.4e-17 |
 //! | [`Energy`] | `I64F64` | J | an output; saturates at ±9.2e18 | 5.4e-20 |
 //! | [`geom::Rot`](crate::geom::Rot) | `I2F30` | 1 | −1 … 1 | 9.3e-10 |
@@ -39,6 +42,7 @@
 mod angle;
 pub mod decimal;
 mod float;
+pub(crate) mod lane;
 mod quantity;
 mod root;
 mod round;
@@ -49,8 +53,8 @@ pub(crate) use angle::TURN_PER_RADIAN_Q64;
 pub use decimal::Decimal;
 pub use float::FromF64;
 pub use quantity::{
-    Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Energy, Force, Impulse, Inertia, Length, Mass, Mu,
-    NumError, Quantity, Radians, RangeError, Torque, Velocity,
+    Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Density, Energy, Force, Friction, Impulse, Inertia,
+    Length, Mass, Mu, NumError, Quantity, Radians, RangeError, Restitution, Torque, Velocity,
 };
 pub use root::{hypot, sqrt};
 pub use round::{add_sat, clamp_i64, cross, div, dot, mul, mul_add, round_shift};

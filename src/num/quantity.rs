@@ -66,7 +66,17 @@ impl RangeError {
 impl fmt::Display for RangeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let RangeError { quantity, unit, value, accepted } = self;
-        write!(f, "{quantity} {value} {unit} is outside {accepted} {unit}")
+        let unit = Unit(unit);
+        write!(f, "{quantity} {value}{unit} is outside {accepted}{unit}")
+    }
+}
+
+/// A unit behind a number; none for a pure number.
+struct Unit(&'static str);
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_empty() { Ok(()) } else { write!(f, " {}", self.0) }
     }
 }
 
@@ -173,7 +183,7 @@ macro_rules! quantities {
 
         impl fmt::Debug for $name {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                write!(f, "{} {}", self.decimal(), $unit)
+                write!(f, "{}{}", self.decimal(), Unit($unit))
             }
         }
 
@@ -250,6 +260,12 @@ quantities! {
     Impulse: FixedI128<U64>, i128, 64, "impulse", "N s", "±1e14", -100_000_000_000_000 * UNIT_64, 100_000_000_000_000 * UNIT_64;
     /// An angular impulse in N m s, counter-clockwise positive: `I64F64`, ±1e18.
     AngularImpulse: FixedI128<U64>, i128, 64, "angular impulse", "N m s", "±1e18", -1_000_000_000_000_000_000 * UNIT_64, 1_000_000_000_000_000_000 * UNIT_64;
+    /// A mass per area in kg/m²: `I64F64`, 1e-9 … 1e12.
+    Density: FixedI128<U64>, i128, 64, "density", "kg/m²", "0.000000001 … 1e12", 18_446_744_074, 1_000_000_000_000 * UNIT_64;
+    /// A coefficient of restitution C_R: `I16F48`, 0 … 1.
+    Restitution: FixedI64<U48>, i64, 48, "restitution", "", "0 … 1", 0, 1 << 48;
+    /// A coefficient of friction: `I16F48`, 0 … 100.
+    Friction: FixedI64<U48>, i64, 48, "friction", "", "0 … 100", 0, 100 << 48;
     /// A rate of exponential decay of velocity in 1/s: `I16F48`, 0 … 1000.
     Damping: FixedI64<U48>, i64, 48, "damping", "1/s", "0 … 1000", 0, 1000 << 48;
     /// A gravitational parameter μ = G·M in m³/s²: `U72F56`, 0 … 2e21.

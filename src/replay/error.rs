@@ -72,7 +72,7 @@ pub enum ReplayError {
         /// Which of that tick's commands, from 0.
         index: u64,
         /// Why.
-        error: CommandError,
+        error: Box<CommandError>,
     },
     /// The world's hash after a tick is not the recorded one.
     Diverged {

@@ -95,7 +95,7 @@ impl<R: Read> Player<R> {
             let mut index = 0u64;
             while reader.remaining() > 0 {
                 let command = Command::load(&mut reader, "command").map_err(decode)?;
-                let refused = |error| ReplayError::Refused { tick, index, error };
+                let refused = |error| ReplayError::Refused { tick, index, error: Box::new(error) };
                 self.world.apply(command).map_err(refused)?;
                 index = index.saturating_add(1);
             }

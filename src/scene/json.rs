@@ -1,15 +1,17 @@
 //! The shape of a scene file.
 
+use super::collider::ColliderJson;
 use super::number::{Number, Pair};
 use super::object::Object;
 use crate::body::{Attractor, BodyDef, BodyKind};
 use crate::motion::Integrator;
 use crate::num::{
-    Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Force, Impulse, Inertia, Length, Mass, Mu, Radians,
-    RangeError, Torque, Velocity,
+    Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Force, Friction, Impulse, Inertia, Length, Mass, Mu,
+    Radians, RangeError, Restitution, Torque, Velocity,
 };
+use crate::world::WorldDef;
 use serde::Deserialize;
-use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{Deserializer, Error, MapAccess, Visitor};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -17,8 +19,10 @@ pub(super) struct SceneJson {
     pub(super) name: String,
     pub(super) tick_rate: u32,
     pub(super) bodies: Vec<Object<BodyJson>>,
-    #[serde(default = "four")]
+    #[serde(default = "substeps")]
     pub(super) substeps: u32,
+    #[serde(default)]
+    pub(super) unit_shift: u32,
     #[serde(default)]
     pub(super) integrator: IntegratorJson,
     #[serde(default)]
@@ -33,8 +37,8 @@ pub(super) struct SceneJson {
     pub(super) about: String,
 }
 
-fn four() -> u32 {
-    4
+fn substeps() -> u32 {
+    WorldDef::default().substeps
 }
 
 fn six_hundred() -> u64 {
@@ -82,7 +86,7 @@ word! {
 }
 
 /// A value that may be left out; `null` is none.
-fn some<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+pub(super) fn some<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
     T::deserialize(deserializer).map(Some)
 }
 
@@ -109,6 +113,8 @@ pub(super) struct BodyJson {
     mass: Option<Number<Mass>>,
     #[serde(default, deserialize_with = "some")]
     inertia: Option<Number<Inertia>>,
+    #[serde(default, deserialize_with = "some")]
+    center: Option<Pair<Length>>,
     #[serde(default)]
     fixed_rotation: bool,
     #[serde(default)]
@@ -119,13 +125,12 @@ pub(super) struct BodyJson {
     mu: Number<Mu>,
     #[serde(default)]
     user_data: u64,
-    #[serde(default, rename = "colliders")]
-    _colliders: NoColliders,
+    #[serde(default)]
+    colliders: Vec<ColliderJson>,
 }
 
 impl BodyJson {
     pub(super) fn def(&self) -> BodyDef {
-        let mass = self.mass.map_or(BodyDef::default().mass, |mass| mass.0);
         BodyDef {
             kind: self.kind.0,
             position: self.position.0,
@@ -134,20 +139,17 @@ impl BodyJson {
             angular_velocity: self.angular_velocity.0,
             force: self.force.0,
             torque: self.torque.0,
-            mass,
-            inertia: inertia(self.inertia, mass),
+            mass: self.mass.map(|mass| mass.0),
+            inertia: self.inertia.map(|inertia| inertia.0),
+            center: self.center.map(|center| center.0),
             fixed_rotation: self.fixed_rotation,
             linear_damping: self.linear_damping.0,
             angular_damping: self.angular_damping.0,
             mu: self.mu.0,
             user_data: self.user_data,
+            colliders: self.colliders.iter().map(|collider| collider.0.clone()).collect(),
         }
     }
-}
-
-/// The inertia given, or that of the mass at a radius of gyration of 1 m.
-pub(super) fn inertia(given: Option<Number<Inertia>>, mass: Mass) -> Inertia {
-    given.map_or(Inertia::from_bits(mass.to_bits()), |inertia| inertia.0)
 }
 
 /// An orientation φ given in radians in [0, 2π].
@@ -158,31 +160,6 @@ impl<'de> Deserialize<'de> for Phi {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let Number(radians) = Number::<Radians>::deserialize(deserializer)?;
         Angle::from_radians(radians).map(Phi).map_err(|error: RangeError| D::Error::custom(error))
-    }
-}
-
-/// The place where colliders will be: for now an empty list.
-#[derive(Clone, Copy, Default)]
-pub(super) struct NoColliders;
-
-impl<'de> Deserialize<'de> for NoColliders {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Empty;
-        impl<'de> Visitor<'de> for Empty {
-            type Value = NoColliders;
-
-            fn expecting(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-                f.write_str("a list of colliders")
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<NoColliders, A::Error> {
-                match seq.next_element::<serde::de::IgnoredAny>()? {
-                    None => Ok(NoColliders),
-                    Some(_) => Err(A::Error::custom("this version has no colliders, only an empty list is accepted")),
-                }
-            }
-        }
-        deserializer.deserialize_seq(Empty)
     }
 }
 
@@ -220,6 +197,7 @@ pub(super) struct CommandJson {
 /// Declares the commands of a script: an object with one key, the command's name, whose value is an object as well.
 macro_rules! actions {
     ($($text:literal => $name:ident $({ $($(#[$attribute:meta])* $field:ident: $type:ty),* $(,)? })? $(($json:ty))?),* $(,)?) => {
+        #[allow(clippy::large_enum_variant, reason = "as `Command`: a box would cost each creation")]
         pub(super) enum Action {
             $($name(actions!(@type $name $(($json))?)),)*
         }
@@ -302,6 +280,20 @@ actions! {
     "set_attractor" => SetAttractor { attractor: Reference, position: Pair<Length>, mu: Number<Mu> },
     "destroy_attractor" => DestroyAttractor { attractor: Reference },
     "set_gravity" => SetGravity { gravity: Pair<Acceleration> },
+    "set_surface" => SetSurface {
+        body: Reference,
+        #[serde(default)]
+        collider: u32,
+        restitution: Number<Restitution>,
+        friction: Number<Friction>,
+    },
+    "set_filter" => SetFilter {
+        body: Reference,
+        #[serde(default)]
+        collider: u32,
+        category: u32,
+        mask: u32,
+    },
     "clear_status" => ClearStatus {},
     "input" => Input { text: String },
 }

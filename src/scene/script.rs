@@ -1,12 +1,16 @@
 //! A scene as read, and its commands as the ticks pass.
 
 use super::error::SceneError;
-use super::json::{self, Action, BodyJson, Reference, SceneJson, inertia};
+use super::json::{self, Action, BodyJson, Reference, SceneJson};
 use super::object::Object;
+use super::stage::Stage;
 use crate::World;
 use crate::body::{Attractor, BodyDef};
-use crate::store::{AttractorId, BodyId};
-use crate::world::{Command, CommandError, Commands, INPUT_MAX, Reply, WorldDef};
+use crate::geom::Vec2;
+use crate::num::{Inertia, Mass};
+use crate::shape::Filter;
+use crate::store::{AttractorId, BodyId, ColliderId};
+use crate::world::{Command, CommandError, Commands, Reply, WorldDef};
 use std::collections::BTreeMap;
 
 /// A scene that has been read and checked.
@@ -32,10 +36,11 @@ impl Scene {
             substeps: file.substeps,
             gravity: file.gravity.0,
             integrator: file.integrator.0,
+            unit_shift: file.unit_shift,
         };
         def.check().map_err(|error| SceneError::new("", error))?;
         let scene = Scene { file, def };
-        scene.start()?.1.check_references()?;
+        scene.rehearse()?;
         Ok(scene)
     }
 
@@ -69,6 +74,13 @@ impl Scene {
             script.create_attractor(&mut world, attractor.name.as_deref(), attractor.attractor(), &place)?;
         }
         Ok((world, script))
+    }
+
+    /// That every command refers to something that is created before it. Whether it still exists then, and takes the
+    /// value, the world says when the tick comes.
+    fn rehearse(&self) -> Result<(), SceneError> {
+        let (world, mut script) = self.start()?;
+        script.apply(u64::MAX, &mut Rehearsal(world))
     }
 }
 
@@ -120,6 +132,8 @@ pub struct Script<'s> {
     bodies: Cast<BodyId>,
     attractors: Cast<AttractorId>,
     labels: BTreeMap<BodyId, String>,
+    /// Whose each collider is or was, and its place in the list of that body.
+    colliders: BTreeMap<ColliderId, (BodyId, u32)>,
 }
 
 impl<'s> Script<'s> {
@@ -127,7 +141,15 @@ impl<'s> Script<'s> {
         let commands = &scene.file.commands;
         let mut order: Vec<usize> = (0..commands.len()).collect();
         order.sort_by_key(|&at| commands[at].0.tick);
-        Script { scene, order, next: 0, bodies: Cast::new(), attractors: Cast::new(), labels: BTreeMap::new() }
+        Script {
+            scene,
+            order,
+            next: 0,
+            bodies: Cast::new(),
+            attractors: Cast::new(),
+            labels: BTreeMap::new(),
+            colliders: BTreeMap::new(),
+        }
     }
 
     /// What the scene calls a body: its name, or its index in order of creation.
@@ -135,10 +157,16 @@ impl<'s> Script<'s> {
         self.labels.get(&body).map_or("", String::as_str)
     }
 
+    /// Whose a collider is, or was before it was destroyed, and its index in the list of that body; `None` if the script
+    /// did not create it.
+    pub fn collider(&self, collider: ColliderId) -> Option<(BodyId, u32)> {
+        self.colliders.get(&collider).copied()
+    }
+
     /// Carries out the commands before the step of `tick`. Ticks must come in order.
     ///
     /// Errors: a command that the world refuses, with its place. Those before it have been carried out.
-    pub fn apply(&mut self, tick: u64, world: &mut impl Commands) -> Result<(), SceneError> {
+    pub fn apply(&mut self, tick: u64, stage: &mut impl Stage) -> Result<(), SceneError> {
         while let Some(&at) = self.order.get(self.next) {
             let Object(command) = &self.scene.file.commands[at];
             if command.tick > tick {
@@ -147,13 +175,16 @@ impl<'s> Script<'s> {
             self.next = self.next.saturating_add(1);
             let place = || format!("commands[{at}]");
             match &command.action {
-                Action::CreateBody(body) => self.create_body(world, body, &place)?,
+                Action::CreateBody(body) => {
+                    self.create_body(stage, body, &|| format!("{}.do.create_body", place()))?;
+                }
                 Action::CreateAttractor(attractor) => {
-                    self.create_attractor(world, attractor.name.as_deref(), attractor.attractor(), &place)?;
+                    self.create_attractor(stage, attractor.name.as_deref(), attractor.attractor(), &place)?;
                 }
                 action => {
-                    let command = self.command(action).map_err(|error| SceneError::new(place(), error))?;
-                    world.apply(command).map_err(|error| SceneError::new(place(), self.in_words(error)))?;
+                    let command = self.command(stage.world(), action);
+                    let command = command.map_err(|error| SceneError::new(place(), error))?;
+                    stage.apply(command).map_err(|error| SceneError::new(place(), self.in_words(error)))?;
                 }
             }
         }
@@ -163,20 +194,27 @@ impl<'s> Script<'s> {
     /// A refusal, with the scene's own name for a body or attractor that is gone.
     fn in_words(&self, error: CommandError) -> String {
         match error {
-            CommandError::NoSuchBody(id) => format!("there is no body \"{}\" any more", self.label(id)),
+            CommandError::NoSuchBody(id) => self.gone(id),
             error => error.to_string(),
         }
     }
 
+    fn gone(&self, body: BodyId) -> String {
+        format!("there is no body \"{}\" any more", self.label(body))
+    }
+
     fn create_body(
         &mut self,
-        world: &mut impl Commands,
+        stage: &mut impl Stage,
         body: &BodyJson,
         place: &dyn Fn() -> String,
     ) -> Result<(), SceneError> {
         let label = self.bodies.label(body.name.as_deref()).map_err(|error| SceneError::new(place(), error))?;
         let def: BodyDef = body.def();
-        let id = world.create_body(&def).map_err(|error| SceneError::new(place(), error))?;
+        let id = stage.create_body(&def).map_err(|error| SceneError::new(place(), error))?;
+        for (collider, index) in stage.world().body(id).iter().flat_map(|body| body.colliders()).zip(0..) {
+            self.colliders.insert(collider.id(), (id, index));
+        }
         self.labels.insert(id, label.clone());
         self.bodies.add(label, id);
         Ok(())
@@ -184,24 +222,30 @@ impl<'s> Script<'s> {
 
     fn create_attractor(
         &mut self,
-        world: &mut impl Commands,
+        stage: &mut impl Stage,
         name: Option<&str>,
         attractor: Attractor,
         place: &dyn Fn() -> String,
     ) -> Result<(), SceneError> {
         let label = self.attractors.label(name).map_err(|error| SceneError::new(place(), error))?;
-        let id = world.create_attractor(attractor).map_err(|error| SceneError::new(place(), error))?;
+        let id = stage.create_attractor(attractor).map_err(|error| SceneError::new(place(), error))?;
         self.attractors.add(label, id);
         Ok(())
     }
 
     /// The command that an action is, with its references resolved.
-    fn command(&self, action: &Action) -> Result<Command, String> {
+    fn command(&self, world: &World, action: &Action) -> Result<Command, String> {
         let body = |reference: &Reference| {
             self.bodies.find(reference).ok_or_else(|| format!("there is no body {}", show(reference)))
         };
         let source = |reference: &Reference| {
             self.attractors.find(reference).ok_or_else(|| format!("there is no attractor {}", show(reference)))
+        };
+        let collider = |reference: &Reference, index: u32| {
+            let id = body(reference)?;
+            let present = world.body(id).ok_or_else(|| self.gone(id))?;
+            let found = present.colliders().nth(index as usize).map(|collider| collider.id());
+            found.ok_or_else(|| format!("body \"{}\" has no collider {index}", self.label(id)))
         };
         Ok(match action {
             Action::CreateBody(def) => Command::CreateBody { def: def.def() },
@@ -222,7 +266,9 @@ impl<'s> Script<'s> {
                 Command::SetTorque { body: body(b)?, torque: torque.0 }
             }
             Action::SetMass(json::SetMass { body: b, mass, inertia: given }) => {
-                Command::SetMass { body: body(b)?, mass: mass.0, inertia: inertia(*given, mass.0) }
+                let (body, mass) = (body(b)?, mass.0);
+                let inertia = given.map_or_else(|| self.inertia(world, body, mass), |given| Ok(given.0))?;
+                Command::SetMass { body, mass, inertia }
             }
             Action::SetFixedRotation(json::SetFixedRotation { body: b, fixed }) => {
                 Command::SetFixedRotation { body: body(b)?, fixed: *fixed }
@@ -255,33 +301,49 @@ impl<'s> Script<'s> {
                 Command::DestroyAttractor { id: source(attractor)? }
             }
             Action::SetGravity(json::SetGravity { gravity }) => Command::SetGravity { gravity: gravity.0 },
+            Action::SetSurface(json::SetSurface { body, collider: index, restitution, friction }) => {
+                Command::SetSurface {
+                    collider: collider(body, *index)?,
+                    restitution: restitution.0,
+                    friction: friction.0,
+                }
+            }
+            Action::SetFilter(json::SetFilter { body, collider: index, category, mask }) => {
+                let filter = Filter { category: *category, mask: *mask };
+                Command::SetFilter { collider: collider(body, *index)?, filter }
+            }
             Action::ClearStatus(json::ClearStatus {}) => Command::ClearStatus,
             Action::Input(json::Input { text }) => Command::Input { bytes: text.clone().into_bytes() },
         })
     }
 
-    /// That every command refers to something that is created before it. Whether it still exists then, and takes the
-    /// value, the world says when the tick comes.
-    fn check_references(mut self) -> Result<(), SceneError> {
-        struct Rehearsal(u32);
-        impl Commands for Rehearsal {
-            fn apply(&mut self, command: Command) -> Result<Reply, CommandError> {
-                self.0 = self.0.saturating_add(1);
-                let (index, generation) = (self.0, u32::MAX);
-                Ok(match command {
-                    Command::CreateBody { def } => {
-                        def.check()?;
-                        Reply::Body(BodyId { index, generation })
-                    }
-                    Command::Input { bytes } if bytes.len() > INPUT_MAX => {
-                        return Err(CommandError::InputTooLong { length: bytes.len() as u64 });
-                    }
-                    Command::CreateAttractor { .. } => Reply::Attractor(AttractorId { index, generation }),
-                    _ => Reply::Done,
-                })
+    /// The inertia that a body would have with this mass, were none given.
+    fn inertia(&self, world: &World, body: BodyId, mass: Mass) -> Result<Inertia, String> {
+        let present = world.body(body).ok_or_else(|| self.gone(body))?;
+        let def = BodyDef { mass: Some(mass), inertia: None, position: Vec2::default(), ..present.def() };
+        def.data().map(|data| data.inertia).map_err(|error| error.to_string())
+    }
+}
+
+/// A world in which things are only created: whatever a command may refer to is there.
+struct Rehearsal(World);
+
+impl Stage for Rehearsal {
+    fn world(&self) -> &World {
+        &self.0
+    }
+
+    fn step(&mut self) {}
+}
+
+impl Commands for Rehearsal {
+    fn apply(&mut self, command: Command) -> Result<Reply, CommandError> {
+        match command {
+            Command::CreateBody { .. } | Command::CreateAttractor { .. } | Command::Input { .. } => {
+                self.0.apply(command)
             }
+            _ => Ok(Reply::Done),
         }
-        self.apply(u64::MAX, &mut Rehearsal(0))
     }
 }
 

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 macro_rules! ids {
     ($($(#[$doc:meta])* $name:ident, $text:literal;)*) => {$(
         $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
         pub struct $name {
             /// The slot.
             pub index: u32,
@@ -52,6 +52,8 @@ ids! {
     BodyId, "body";
     /// An attractor's id.
     AttractorId, "attractor";
+    /// A collider's id.
+    ColliderId, "collider";
 }
 
 /// The link of a slot that is in use.

@@ -40,6 +40,16 @@ pub(crate) fn hash_bytes(bytes: &[u8]) -> u64 {
     XxHash3_64::oneshot(bytes)
 }
 
+/// XXH3-64 of the little-endian bytes of rows of words: one pass over memory where that is how memory holds them.
+pub(crate) fn hash_words<const N: usize>(rows: &[[u64; N]]) -> u64 {
+    if cfg!(target_endian = "little") {
+        hash_bytes(bytemuck::cast_slice(rows.as_flattened()))
+    } else {
+        let swapped: Vec<u64> = rows.iter().flatten().map(|word| word.to_le()).collect();
+        hash_bytes(bytemuck::cast_slice(&swapped))
+    }
+}
+
 /// XXH3-64 of what is written, without allocating: exactly that for up to 256 bytes; longer input is hashed in
 /// blocks of 256, each seeded with the hash of those before.
 pub(crate) struct Hasher {

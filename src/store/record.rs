@@ -5,7 +5,6 @@
 
 use super::codec::{DecodeError, Reader, Sink, put};
 use crate::geom::Vec2;
-use crate::num::Quantity;
 use core::fmt::Write;
 
 /// A place where two states differ.
@@ -110,7 +109,7 @@ macro_rules! quantities {
 
             fn diff(&self, other: &Self, diff: &mut Diff) {
                 if self != other {
-                    let show = |v: &Self| format!("{v} {} (bits {:#x})", Self::UNIT, v.to_bits());
+                    let show = |v: &Self| format!("{v:?} (bits {:#x})", v.to_bits());
                     diff.note(show(self), show(other));
                 }
             }
@@ -118,7 +117,7 @@ macro_rules! quantities {
     )*};
 }
 
-quantities! { Acceleration Angle AngularVelocity Damping Force Inertia Length Mass Mu Torque Velocity Impulse AngularImpulse }
+quantities! { Acceleration Angle AngularVelocity Damping Density Force Friction Restitution Inertia Length Mass Mu Torque Velocity Impulse AngularImpulse }
 
 impl<Q: Record> Record for Vec2<Q> {
     const LEAST: usize = Q::LEAST.saturating_mul(2);
@@ -136,6 +135,25 @@ impl<Q: Record> Record for Vec2<Q> {
     fn diff(&self, other: &Self, diff: &mut Diff) {
         diff.field("x", |d| self.x.diff(&other.x, d));
         diff.field("y", |d| self.y.diff(&other.y, d));
+    }
+}
+
+impl<T: Record + PartialEq + core::fmt::Debug> Record for Option<T> {
+    fn save(&self, sink: &mut impl Sink) {
+        self.is_some().save(sink);
+        if let Some(value) = self {
+            value.save(sink);
+        }
+    }
+
+    fn load(reader: &mut Reader<'_>, field: &'static str) -> Result<Self, DecodeError> {
+        if bool::load(reader, field)? { T::load(reader, field).map(Some) } else { Ok(None) }
+    }
+
+    fn diff(&self, other: &Self, diff: &mut Diff) {
+        if self != other {
+            diff.note(format!("{self:?}"), format!("{other:?}"));
+        }
     }
 }
 

@@ -3,14 +3,14 @@
 use super::command::{Command, CommandError, INPUT_MAX, Reply};
 use super::commands::Commands;
 use crate::World;
-use crate::body::{Attractor, BodyData, BodyDef, BodyError, BodyKind};
+use crate::body::{Attractor, BodyData, BodyDef, BodyError, BodyKind, Collider, center_at, origin_of};
 use crate::geom::Vec2;
 use crate::motion::{Push, Source, acceleration};
 use crate::num::{
     Acceleration, AngularImpulse, AngularVelocity, Damping, Decimal, Force, Impulse, Length, Mu, Quantity, RangeError,
     Torque, Velocity, clamp_i64, cross_wide, mul_div,
 };
-use crate::store::{Arena, AttractorId, BodyId};
+use crate::store::{Arena, AttractorId, BodyId, ColliderId};
 
 impl Commands for World {
     fn apply(&mut self, command: Command) -> Result<Reply, CommandError> {
@@ -20,11 +20,18 @@ impl Commands for World {
             Command::SetKind { body, kind } => self.change_kind(body, kind)?,
             Command::SetPosition { body, position } => {
                 let slot = self.slot(body)?;
-                self.bodies.set_position(slot, position.checked()?);
+                let center =
+                    center_at(position.checked()?, self.bodies.cold.value(slot).center, self.bodies.angle.get(slot));
+                self.bodies.set_position(slot, center.checked()?);
+                self.place(slot);
             }
             Command::SetAngle { body, angle } => {
                 let slot = self.slot(body)?;
-                self.bodies.angle.set(slot, angle.checked()?);
+                let (center, angle) = (self.bodies.cold.value(slot).center, angle.checked()?);
+                let origin = origin_of(self.bodies.position(slot), center, self.bodies.angle.get(slot));
+                self.bodies.set_position(slot, center_at(origin, center, angle).checked()?);
+                self.bodies.angle.set(slot, angle);
+                self.place(slot);
             }
             Command::SetVelocity { body, velocity } => {
                 let slot = self.slot(body)?;
@@ -86,7 +93,17 @@ impl Commands for World {
             }
             Command::SetGravity { gravity } => {
                 self.config.gravity = gravity.checked()?;
-                self.rebuild();
+                self.prepare_motion();
+            }
+            Command::SetSurface { collider, restitution, friction } => {
+                let slot = self.collider_slot(collider)?;
+                let (restitution, friction) = (restitution.checked()?, friction.checked()?);
+                self.colliders.rows.update(slot, |row| (row.restitution, row.friction) = (restitution, friction));
+            }
+            Command::SetFilter { collider, filter } => {
+                let slot = self.collider_slot(collider)?;
+                self.colliders.rows.update(slot, |row| row.filter = filter);
+                self.touch.set(slot, &self.bodies, &self.colliders);
             }
             Command::ClearStatus => self.status.clear(),
             Command::Input { bytes } => {
@@ -147,14 +164,28 @@ impl World {
         self.attractors.slot(id.index, id.generation).ok_or(CommandError::NoSuchAttractor(id))
     }
 
+    fn collider_slot(&self, id: ColliderId) -> Result<usize, CommandError> {
+        self.colliders.slot(id).ok_or(CommandError::NoSuchCollider(id))
+    }
+
     fn add_body(&mut self, def: &BodyDef) -> Result<BodyId, CommandError> {
-        def.check()?;
-        check_acceleration(&def.data(), None)?;
+        let data = def.data()?;
+        check_acceleration(&data, None)?;
         if !self.bodies.cold.has_room() {
             return Err(CommandError::Full { what: "bodies", limit: Arena::<BodyData>::LIMIT });
         }
-        let id = self.bodies.insert(def);
-        self.refresh(id.index as usize);
+        if !self.colliders.has_room(def.colliders.len()) {
+            return Err(CommandError::Full { what: "colliders", limit: Arena::<Collider>::LIMIT });
+        }
+        let center = data.center;
+        let id = self.bodies.insert(def, data);
+        let slot = id.index as usize;
+        let first = self.colliders.insert(id.index, center, &def.colliders);
+        if first.is_some() {
+            self.bodies.cold.update(slot, |data| data.first = first);
+        }
+        self.refresh(slot);
+        self.place(slot);
         if def.mu != Mu::ZERO {
             self.set_source(Source::carried(id.index as usize, def.mu));
         }
@@ -164,6 +195,11 @@ impl World {
     fn remove_body(&mut self, body: BodyId) -> Result<(), CommandError> {
         let slot = self.slot(body)?;
         let pulls = self.bodies.cold.value(slot).mu != Mu::ZERO;
+        let first = self.bodies.cold.value(slot).first;
+        for collider in self.colliders.list(first) {
+            self.touch.remove(collider);
+        }
+        self.colliders.remove(first);
         self.bodies.remove(body);
         self.drop_push(slot);
         self.refresh(slot);
@@ -198,6 +234,7 @@ impl World {
 
     fn change_kind(&mut self, body: BodyId, kind: BodyKind) -> Result<(), CommandError> {
         let slot = self.slot(body)?;
+        self.bodies.cold.value(slot).check_gyration(kind, self.bodies.cold.value(slot).fixed_rotation)?;
         if kind != BodyKind::Dynamic {
             self.drop_push(slot);
         }
@@ -213,11 +250,13 @@ impl World {
             }
         });
         self.refresh(slot);
+        self.place(slot);
         Ok(())
     }
 
     fn fix_rotation(&mut self, body: BodyId, fixed: bool) -> Result<(), CommandError> {
         let slot = self.slot(body)?;
+        self.bodies.cold.value(slot).check_gyration(self.bodies.cold.value(slot).kind, fixed)?;
         if fixed {
             self.bodies.omega.set(slot, AngularVelocity::ZERO);
             if self.drive.push_of(slot, &self.pushes).is_some() {
@@ -276,7 +315,7 @@ impl World {
     /// Lets a source begin, change or cease to pull.
     fn set_source(&mut self, source: Source) {
         if self.drive.set_source(source) {
-            self.rebuild();
+            self.prepare_motion();
         }
     }
 

@@ -1,7 +1,8 @@
 //! Looking at a body.
 
+use super::Collider;
 use crate::World;
-use crate::body::{BodyData, BodyDef, BodyKind};
+use crate::body::{BodyData, BodyDef, BodyKind, origin_of};
 use crate::geom::{Rot, Vec2};
 use crate::num::{Angle, AngularVelocity, Energy, Length, Mass, Velocity, mul_add, mul_div};
 use crate::store::BodyId;
@@ -35,13 +36,15 @@ impl Body<'_> {
             angular_velocity: self.angular_velocity(),
             force: data.force,
             torque: data.torque,
-            mass: data.mass,
-            inertia: data.inertia,
+            mass: Some(data.mass),
+            inertia: Some(data.inertia),
+            center: Some(data.center),
             fixed_rotation: data.fixed_rotation,
             linear_damping: data.linear_damping,
             angular_damping: data.angular_damping,
             mu: data.mu,
             user_data: data.user_data,
+            colliders: self.colliders().map(|collider| collider.def()).collect(),
         }
     }
 
@@ -50,9 +53,20 @@ impl Body<'_> {
         self.data().kind
     }
 
-    /// Its origin, which is its centre of mass.
+    /// Its origin: the very bits that were set, until it moves.
     pub fn position(&self) -> Vec2<Length> {
+        origin_of(self.center_of_mass(), self.data().center, self.angle())
+    }
+
+    /// Its centre of mass, in the world.
+    pub fn center_of_mass(&self) -> Vec2<Length> {
         self.world.bodies.position(self.slot)
+    }
+
+    /// Its colliders, in the order of its definition.
+    pub fn colliders(&self) -> impl Iterator<Item = Collider<'_>> {
+        let world = self.world;
+        world.colliders.list(self.data().first).map(move |slot| Collider { world, slot })
     }
 
     /// Its orientation in turns, unwrapped (DD:angDisp is a difference of two); [`Angle::radians`] is φ in [0, 2π).
@@ -79,7 +93,7 @@ impl Body<'_> {
     ///
     /// Rounding: once per component. Overflow: saturates.
     pub fn velocity_at(&self, point: Vec2<Length>) -> Vec2<Velocity> {
-        let (center, velocity) = (self.position(), self.velocity());
+        let (center, velocity) = (self.center_of_mass(), self.velocity());
         let omega = self.angular_velocity().to_bits();
         let arm = |p: Length, c: Length| p.to_bits().saturating_sub(c.to_bits());
         let (rx, ry) = (arm(point.x, center.x), arm(point.y, center.y));
@@ -110,7 +124,7 @@ impl Body<'_> {
 
     /// −m·g·p (DD:potEnergy) in the world's uniform gravity. Rounding: once. Overflow: saturates.
     pub fn potential_energy(&self) -> Energy {
-        let (p, g) = (self.position(), self.world.config.gravity);
+        let (p, g) = (self.center_of_mass(), self.world.config.gravity);
         let product = |a: i64, b: i64| i128::from(a).saturating_mul(b.into());
         let height = product(g.x.to_bits(), p.x.to_bits()).saturating_add(product(g.y.to_bits(), p.y.to_bits()));
         Energy::from_bits(mul_div(height.saturating_neg(), self.data().mass.to_bits(), 1 << 80))

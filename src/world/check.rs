@@ -3,6 +3,7 @@
 use crate::World;
 use crate::motion::Drive;
 use crate::num::Quantity;
+use crate::solver::{Mobility, Scales};
 
 impl World {
     /// Whether every invariant holds: free slots are empty and chained, columns are as long as their slots, values
@@ -11,9 +12,10 @@ impl World {
     ///
     /// Errors: the first broken invariant, in words.
     pub fn check(&self) -> Result<(), String> {
-        let World { config, tick: _, bodies, attractors, pushes, status: _, drive, faults } = self;
+        let World { config, bodies, colliders, attractors, pushes, drive, touch: _, solver, faults, .. } = self;
         self.check_lists()?;
         bodies.check().map_err(|reason| format!("the table of bodies {reason}"))?;
+        colliders.check().map_err(|reason| format!("the table of colliders {reason}"))?;
         attractors.check().map_err(|reason| format!("the table of attractors {reason}"))?;
         if !faults.is_empty() {
             return Err("faults of the last step were left over".into());
@@ -23,6 +25,11 @@ impl World {
         fresh.index_pushes(pushes);
         for slot in 0..bodies.cold.len() {
             fresh.set(slot, bodies.cold.value(slot), config.gravity, None);
+        }
+        let mobilities: Vec<_> = (0..bodies.cold.len()).map(|slot| Mobility::new(bodies.cold.value(slot))).collect();
+        let scales = Scales::new(config.tick_rate, config.substeps, config.unit_shift);
+        if mobilities != solver.mobilities || scales != solver.scales {
+            return Err("the prepared solver does not follow from the state".into());
         }
         // Where carried sources were at the last evaluation does not matter: each evaluation moves them first.
         let mut present = drive.clone();
@@ -37,7 +44,34 @@ impl World {
     /// What is left to check of a world whose tables were read and are sound in themselves: the configuration, and
     /// the lists that refer to bodies. The first broken invariant, in words.
     pub(crate) fn check_lists(&self) -> Result<(), String> {
-        let World { config, bodies, attractors, pushes, status, .. } = self;
+        let World { config, bodies, colliders, attractors, pushes, contacts, status, .. } = self;
+        contacts.check().map_err(|reason| format!("the list of contacts {reason}"))?;
+        // Each collider belongs to exactly one body's list, and to the body that it says.
+        let mut listed = 0u32;
+        for (slot, data) in bodies.cold.iter() {
+            let mut reach = 0;
+            let mut next = data.first;
+            while let Some(at) = next {
+                let row = (colliders.rows.generation(at as usize)).map(|_| colliders.rows.value(at as usize));
+                let Some(row) = row.filter(|row| row.body as usize == slot && listed < colliders.rows.live()) else {
+                    return Err(format!("the colliders of slot {slot} are not its own"));
+                };
+                if colliders.forms.value(row.form as usize).center != data.center {
+                    return Err(format!("a collider of slot {slot} has a form about another centre"));
+                }
+                if !row.sensor {
+                    reach = reach.max(colliders.outline(at as usize).reach);
+                }
+                listed = listed.saturating_add(1);
+                next = row.next;
+            }
+            if data.reach.to_bits() != reach {
+                return Err(format!("the reach of slot {slot} is not that of its colliders"));
+            }
+        }
+        if listed != colliders.rows.live() {
+            return Err("a collider belongs to no body".into());
+        }
         config.check().map_err(|error| error.to_string())?;
         status.check().map_err(|reason| format!("the table of status entries {reason}"))?;
         for (_, attractor) in attractors.iter() {

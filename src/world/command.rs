@@ -3,10 +3,11 @@
 use crate::body::{Attractor, BodyDef, BodyError, BodyKind};
 use crate::geom::Vec2;
 use crate::num::{
-    Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Force, Impulse, Inertia, Length, Mass, Mu, Torque,
-    Velocity,
+    Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Force, Friction, Impulse, Inertia, Length, Mass, Mu,
+    Restitution, Torque, Velocity,
 };
-use crate::store::{AttractorId, BodyId, DecodeError, Diff, Reader, Record, Sink, record_enum};
+use crate::shape::Filter;
+use crate::store::{AttractorId, BodyId, ColliderId, record_enum};
 use core::fmt;
 use serde::{Deserialize, Serialize};
 
@@ -172,6 +173,22 @@ pub enum Command {
         /// The acceleration of every dynamic body.
         gravity: Vec2<Acceleration>,
     },
+    /// Changes what a collider does to others that it touches.
+    SetSurface {
+        /// Which.
+        collider: ColliderId,
+        /// C_R.
+        restitution: Restitution,
+        /// The coefficient of friction.
+        friction: Friction,
+    },
+    /// Changes what a collider meets.
+    SetFilter {
+        /// Which.
+        collider: ColliderId,
+        /// What it is and meets.
+        filter: Filter,
+    },
     /// Forgets what went out of range.
     ClearStatus,
     /// Attaches the game's own bytes to this tick. The world does not look at them; replays carry them.
@@ -206,26 +223,9 @@ record_enum!(Command {
     21 => SetGravity { gravity },
     22 => ClearStatus {},
     23 => Input { bytes },
+    24 => SetSurface { collider, restitution, friction },
+    25 => SetFilter { collider, filter },
 });
-
-impl<T: Record + PartialEq + fmt::Debug> Record for Option<T> {
-    fn save(&self, sink: &mut impl Sink) {
-        self.is_some().save(sink);
-        if let Some(value) = self {
-            value.save(sink);
-        }
-    }
-
-    fn load(reader: &mut Reader<'_>, field: &'static str) -> Result<Self, DecodeError> {
-        if bool::load(reader, field)? { T::load(reader, field).map(Some) } else { Ok(None) }
-    }
-
-    fn diff(&self, other: &Self, diff: &mut Diff) {
-        if self != other {
-            diff.note(format!("{self:?}"), format!("{other:?}"));
-        }
-    }
-}
 
 /// What an accepted command answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -246,6 +246,8 @@ pub enum CommandError {
     NoSuchBody(BodyId),
     /// The attractor was destroyed, or never was.
     NoSuchAttractor(AttractorId),
+    /// The collider's body was destroyed, or never was.
+    NoSuchCollider(ColliderId),
     /// The body cannot have this value.
     Body(BodyError),
     /// A table is full.
@@ -267,6 +269,7 @@ impl fmt::Display for CommandError {
         match self {
             CommandError::NoSuchBody(id) => write!(f, "there is no {id}"),
             CommandError::NoSuchAttractor(id) => write!(f, "there is no {id}"),
+            CommandError::NoSuchCollider(id) => write!(f, "there is no {id}"),
             CommandError::Body(error) => error.fmt(f),
             CommandError::Full { what, limit } => write!(f, "there are {limit} {what}, which is the most there can be"),
             CommandError::InputTooLong { length } => write!(f, "input of {length} bytes is longer than {INPUT_MAX}"),

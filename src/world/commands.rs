@@ -4,10 +4,11 @@ use super::command::{Command, CommandError, Reply};
 use crate::body::{Attractor, BodyDef, BodyKind};
 use crate::geom::Vec2;
 use crate::num::{
-    Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Force, Impulse, Inertia, Length, Mass, Mu, Torque,
-    Velocity,
+    Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Force, Friction, Impulse, Inertia, Length, Mass, Mu,
+    Restitution, Torque, Velocity,
 };
-use crate::store::{AttractorId, BodyId};
+use crate::shape::Filter;
+use crate::store::{AttractorId, BodyId, ColliderId};
 
 /// The commands as methods, for whatever takes commands: a [`World`](crate::World), or a recorder around one.
 pub trait Commands {
@@ -138,6 +139,21 @@ pub trait Commands {
     /// Changes gravity.
     fn set_gravity(&mut self, gravity: Vec2<Acceleration>) -> Result<(), CommandError> {
         self.apply(Command::SetGravity { gravity }).map(drop)
+    }
+
+    /// Changes what a collider does to others that it touches.
+    fn set_surface(
+        &mut self,
+        collider: ColliderId,
+        restitution: Restitution,
+        friction: Friction,
+    ) -> Result<(), CommandError> {
+        self.apply(Command::SetSurface { collider, restitution, friction }).map(drop)
+    }
+
+    /// Changes what a collider meets.
+    fn set_filter(&mut self, collider: ColliderId, filter: Filter) -> Result<(), CommandError> {
+        self.apply(Command::SetFilter { collider, filter }).map(drop)
     }
 
     /// Forgets what went out of range.

@@ -3,19 +3,25 @@
 mod apply;
 mod body;
 mod check;
+mod collider;
 mod command;
 mod commands;
 mod config;
+mod query;
 mod status;
 mod step;
 
-use crate::body::{Attractor, Bodies};
+use crate::body::{Attractor, Bodies, Colliders};
+use crate::contact::{Contacts, Event, Touch};
 use crate::motion::{Drive, Fault, Push};
-use crate::store::{Arena, AttractorId, BodyId, record};
+use crate::solver::{Mobility, Scales, Solver};
+use crate::store::{Arena, AttractorId, BodyId, ColliderId, record};
 pub use body::Body;
+pub use collider::Collider;
 pub use command::{Command, CommandError, INPUT_MAX, Reply};
 pub use commands::Commands;
 pub use config::{ConfigError, Integrator, WorldDef};
+pub use query::{ClosestPoint, RayHit};
 pub use status::{Bound, Status, StatusEntry};
 
 /// A world of bodies under forces.
@@ -40,17 +46,27 @@ pub struct World {
     pub(crate) config: WorldDef,
     pub(crate) tick: u64,
     pub(crate) bodies: Bodies,
+    pub(crate) colliders: Colliders,
     pub(crate) attractors: Arena<Attractor>,
     /// Forces and torques of one tick, in the order in which the bodies first got some.
     pub(crate) pushes: Vec<Push>,
+    /// What touches, and the impulses with which the next tick begins.
+    pub(crate) contacts: Contacts,
     pub(crate) status: Status,
     /// Derived from the above.
     pub(crate) drive: Drive,
+    pub(crate) touch: Touch,
+    pub(crate) solver: Solver,
+    /// Of the last step: a value of it, not state.
+    pub(crate) events: Vec<Event>,
     /// Empty between ticks.
     pub(crate) faults: Vec<Fault>,
+    /// Where the contacts of the next tick are built.
+    pub(crate) next: Contacts,
 }
 
-record!(World { config, tick, bodies, attractors, pushes, status } derived { drive, faults });
+record!(World { config, tick, bodies, colliders, attractors, pushes, contacts, status }
+    derived { drive, touch, solver, events, faults, next });
 
 impl World {
     /// An empty world. Errors: a tick rate, substeps or gravity outside their ranges.
@@ -60,11 +76,17 @@ impl World {
             config: def.clone(),
             tick: 0,
             bodies: Bodies::default(),
+            colliders: Colliders::default(),
             attractors: Arena::default(),
             pushes: Vec::new(),
+            contacts: Contacts::default(),
             status: Status::default(),
             drive: Drive::default(),
+            touch: Touch::default(),
+            solver: Solver::default(),
+            events: Vec::new(),
             faults: Vec::new(),
+            next: Contacts::default(),
         };
         world.rebuild();
         Ok(world)
@@ -114,8 +136,35 @@ impl World {
         })
     }
 
+    /// The collider with this id; `None` if its body was destroyed.
+    pub fn collider(&self, id: ColliderId) -> Option<Collider<'_>> {
+        let slot = self.colliders.slot(id)?;
+        Some(Collider { world: self, slot })
+    }
+
+    /// All colliders in slot order.
+    pub fn colliders(&self) -> impl Iterator<Item = Collider<'_>> {
+        self.colliders.rows.iter().map(|(slot, _)| Collider { world: self, slot })
+    }
+
+    /// What began and ended to touch in the last step, ordered by colliders. A value of the step: it is neither saved nor
+    /// hashed, and a world just loaded has none.
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
     /// Computes everything derived anew.
     pub(crate) fn rebuild(&mut self) {
+        self.prepare_motion();
+        self.solver.scales = Scales::new(self.config.tick_rate, self.config.substeps, self.config.unit_shift);
+        self.touch.clear();
+        for slot in 0..self.bodies.cold.len() {
+            self.place(slot);
+        }
+    }
+
+    /// Computes the motion of all bodies anew: the scheme or gravity have changed.
+    pub(crate) fn prepare_motion(&mut self) {
         let World { config, bodies, attractors, drive, .. } = self;
         drive.prepare(config.integrator, config.tick_rate, config.substeps, bodies, attractors);
         self.drive.index_pushes(&self.pushes);
@@ -126,7 +175,19 @@ impl World {
 
     /// Computes the motion of one body anew, without the forces of one tick.
     pub(crate) fn refresh(&mut self, slot: usize) {
-        self.drive.grow(self.bodies.cold.len());
-        self.drive.set(slot, self.bodies.cold.value(slot), self.config.gravity, None);
+        let slots = self.bodies.cold.len();
+        let data = self.bodies.cold.value(slot);
+        self.drive.grow(slots);
+        self.drive.set(slot, data, self.config.gravity, None);
+        self.solver.mobilities.resize(slots, Mobility::default());
+        self.solver.mobilities[slot] = Mobility::new(data);
+    }
+
+    /// Tells the broad phase where a body's colliders are, after a command has put them there.
+    pub(crate) fn place(&mut self, slot: usize) {
+        let World { bodies, colliders, touch, .. } = self;
+        for collider in colliders.list(bodies.cold.value(slot).first) {
+            touch.set(collider, bodies, colliders);
+        }
     }
 }

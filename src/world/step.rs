@@ -11,7 +11,22 @@ impl World {
     /// machine.
     pub fn step(&mut self) {
         // All of the world: what is not here is not state.
-        let World { config, tick, bodies, attractors: _, pushes, status, drive, faults } = self;
+        let World {
+            config,
+            tick,
+            bodies,
+            colliders,
+            attractors: _,
+            pushes,
+            contacts,
+            status,
+            drive,
+            touch,
+            solver,
+            events,
+            faults,
+            next,
+        } = self;
 
         // Forces of this tick: into the prepared motion, and out of it again below.
         for push in pushes.iter() {
@@ -19,7 +34,11 @@ impl World {
             drive.set(slot, bodies.cold.value(slot), config.gravity, Some(push));
         }
 
+        touch.find(bodies, colliders, contacts, solver.scales.margins);
+        solver.prepare(touch, contacts, bodies, colliders);
         integrate(bodies, drive, faults);
+        solver.run(bodies, faults);
+        touch.finish(contacts, next, colliders, events, |pair| solver.outcome(touch, pair));
 
         for push in pushes.drain(..) {
             let slot = push.slot as usize;

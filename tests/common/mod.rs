@@ -5,8 +5,9 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::str::FromStr;
 use tamias2d::{
-    Acceleration, Attractor, AttractorId, BodyDef, BodyId, BodyKind, Command, CommandError, Commands, Force, Impulse,
-    Length, NumError, Reply, Vec2, Velocity, World, WorldDef,
+    Acceleration, Attractor, AttractorId, BodyDef, BodyId, BodyKind, ColliderDef, ColliderId, Command, CommandError,
+    Commands, Filter, Force, Friction, Impulse, Length, NumError, Reply, Restitution, Shape, Vec2, Velocity, World,
+    WorldDef,
 };
 
 /// One unit of a position, in metres.
@@ -46,6 +47,17 @@ vectors! {
 /// An empty world with 60 ticks per second and this gravity.
 pub fn world(gx: f64, gy: f64) -> World {
     World::new(&WorldDef { gravity: acc(gx, gy), ..WorldDef::default() }).expect("accepted")
+}
+
+/// A disc at its body's origin.
+pub fn disc(radius: f64) -> ColliderDef {
+    ColliderDef::new(Shape::Circle { radius: Length::from_f64(radius).expect("in range") })
+}
+
+/// A rectangle at its body's origin.
+pub fn rectangle(width: f64, height: f64) -> ColliderDef {
+    let [width, height] = [width, height].map(|side| Length::from_f64(side).expect("in range"));
+    ColliderDef::new(Shape::Box { width, height })
 }
 
 /// Steps `ticks` times.
@@ -134,14 +146,21 @@ pub struct Storm {
     pub rng: Rng,
     /// Positions are within ± this.
     pub reach: f64,
+    /// Whether bodies have colliders.
+    solid: bool,
     bodies: Vec<BodyId>,
     attractors: Vec<AttractorId>,
 }
 
 impl Storm {
-    /// A storm with positions within ±`reach`.
+    /// A storm with positions within ±`reach`, of bodies without colliders.
     pub fn new(seed: u64, reach: f64) -> Storm {
-        Storm { rng: Rng(seed), reach, bodies: Vec::new(), attractors: Vec::new() }
+        Storm { rng: Rng(seed), reach, solid: false, bodies: Vec::new(), attractors: Vec::new() }
+    }
+
+    /// A storm of bodies of which most have colliders.
+    pub fn solid(seed: u64, reach: f64) -> Storm {
+        Storm { solid: true, ..Storm::new(seed, reach) }
     }
 
     /// Carries out the next command.
@@ -191,7 +210,48 @@ impl Storm {
         Attractor { position: self.place(), mu: tamias2d::Mu::from_f64(mu).expect("in range") }
     }
 
+    fn filter(&mut self) -> Filter {
+        let bits = |rng: &mut Rng| 1 | rng.bits() as u32 & 6;
+        Filter { category: bits(&mut self.rng), mask: bits(&mut self.rng) }
+    }
+
+    fn collider(&mut self) -> ColliderDef {
+        let size = self.rng.scale(0.1, 10.0);
+        let shape = match self.rng.below(4) {
+            0 => disc(size),
+            1 => {
+                let corner = |x, y| at(x * size, y * size);
+                let vertices = vec![corner(-1.0, -0.5), corner(0.9, -0.6), corner(0.7, 0.4), corner(-0.2, 0.8)];
+                ColliderDef::new(Shape::Polygon { vertices })
+            }
+            _ => rectangle(size, self.rng.scale(0.1, 10.0)),
+        };
+        let filter = if self.rng.below(4) == 0 { self.filter() } else { Filter::default() };
+        ColliderDef {
+            offset: if self.rng.below(2) == 0 {
+                at(self.rng.signed(0.01, 3.0), self.rng.signed(0.01, 3.0))
+            } else {
+                at(0.0, 0.0)
+            },
+            angle: tamias2d::Angle::from_bits((self.rng.bits() >> 16) as i64),
+            restitution: Restitution::from_f64(self.rng.unit()).expect("in range"),
+            friction: Friction::from_f64(self.rng.unit()).expect("in range"),
+            sensor: self.rng.below(8) == 0,
+            filter,
+            ..shape
+        }
+    }
+
+    /// A collider that there may be.
+    fn collider_id(&mut self) -> ColliderId {
+        let count = self.bodies.len() as u64 + 1;
+        ColliderId { index: self.rng.below(count) as u32, generation: self.rng.below(3) as u32 }
+    }
+
     fn def(&mut self) -> BodyDef {
+        let colliders = if self.solid { self.rng.below(4) } else { 0 };
+        let colliders: Vec<ColliderDef> = (0..colliders).map(|_| self.collider()).collect();
+        let given = colliders.is_empty() || self.rng.below(3) == 0;
         let kind = self.kind();
         let position = self.place();
         let mu = self.mu();
@@ -209,8 +269,9 @@ impl Storm {
                 .expect("in range"),
             force: newtons(some(rng.signed(1e-6, 1e3), dynamic), some(rng.signed(1e-6, 1e3), dynamic)),
             torque: tamias2d::Torque::from_f64(some(rng.signed(1e-6, 1e3), dynamic && !fixed)).expect("in range"),
-            mass: tamias2d::Mass::from_f64(rng.scale(0.1, 1e6)).expect("in range"),
-            inertia: tamias2d::Inertia::from_f64(rng.scale(0.1, 1e9)).expect("in range"),
+            mass: given.then(|| tamias2d::Mass::from_f64(rng.scale(0.1, 1e6)).expect("in range")),
+            inertia: given.then(|| tamias2d::Inertia::from_f64(rng.scale(0.1, 1e9)).expect("in range")),
+            center: (!given && rng.below(4) == 0).then(|| at(rng.signed(0.01, 3.0), rng.signed(0.01, 3.0))),
             fixed_rotation: fixed,
             linear_damping: tamias2d::Damping::from_f64(some(
                 rng.scale(0.01, 1000.0),
@@ -224,6 +285,7 @@ impl Storm {
             .expect("in range"),
             mu: tamias2d::Mu::from_f64(mu).expect("in range"),
             user_data: rng.bits(),
+            colliders,
         }
     }
 
@@ -240,7 +302,10 @@ impl Storm {
             0 => AttractorId { index: 7, generation: 7 },
             count => self.attractors[(count - 1 - self.rng.below(count.min(3))) as usize],
         };
-        let choice = if self.bodies.len() < 4 { 0 } else { self.rng.below(42) };
+        let choice = match self.bodies.len() {
+            0..4 => 0,
+            _ => self.rng.below(if self.solid { 46 } else { 42 }),
+        };
         match choice {
             0..=5 => Command::CreateBody { def: self.def() },
             6..=8 => Command::DestroyBody { body },
@@ -291,6 +356,12 @@ impl Storm {
             36..=37 => Command::DestroyAttractor { id },
             38 => Command::SetGravity { gravity: acc(self.rng.signed(1e-6, 1e3), self.rng.signed(1e-6, 1e3)) },
             39 => Command::ClearStatus,
+            42..=43 => Command::SetSurface {
+                collider: self.collider_id(),
+                restitution: Restitution::from_f64(self.rng.unit()).expect("fits"),
+                friction: Friction::from_f64(self.rng.unit()).expect("fits"),
+            },
+            44..=45 => Command::SetFilter { collider: self.collider_id(), filter: self.filter() },
             _ => {
                 let length = self.rng.below(20);
                 Command::Input { bytes: (0..length).map(|_| self.rng.bits() as u8).collect() }

@@ -1,0 +1,295 @@
+//! Which colliders touch in this tick: from candidates to manifolds.
+//!
+//! What is found follows from bodies, colliders and contacts alone: the broad phase hands out more than that, in
+//! order, and every pair is looked at exactly here.
+
+use super::event::{Event, EventKind};
+use super::row::{Contact, Contacts};
+use crate::body::{Bodies, BodyKind, Colliders};
+use crate::broad::Broad;
+use crate::geom::{Aabb, Rot, Vec2};
+use crate::narrow::{Manifold, collide, overlap};
+use crate::num::{Length, cross, dot, mul};
+use crate::shape::Placed;
+
+/// How far ahead contacts are looked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Margins {
+    /// The distance at which resting colliders get contact points, Q32 m.
+    pub(crate) base: i64,
+    /// The tick in seconds, 63 fraction bits.
+    pub(crate) tick: i64,
+}
+
+/// A velocity's way in a tick, Q32 m.
+fn way(velocity: i64, tick: i64) -> i64 {
+    mul(velocity, tick, 48 + 63 - 32)
+}
+
+/// No contact of the last tick.
+pub(crate) const NEW: u32 = u32::MAX;
+
+/// Two colliders that have contact points, or a sensor and what overlaps it.
+#[derive(Clone, Debug)]
+pub(crate) struct Pair {
+    /// Their slots, the lower one first.
+    pub(crate) colliders: [u32; 2],
+    /// The slots of their bodies.
+    pub(crate) bodies: [u32; 2],
+    /// Without points for a sensor.
+    pub(crate) manifold: Manifold,
+    /// Where the pair is among the contacts of the last tick, or [`NEW`].
+    pub(crate) old: u32,
+}
+
+/// What is known of a collider without looking it up.
+#[derive(Clone, Copy, Debug, Default)]
+struct Proxy {
+    body: u32,
+    /// No point is farther from the centre of mass, Q32 m.
+    reach: i64,
+}
+
+/// The pairs of a tick, and what finding them needs. All of it is derived, and none of it lasts but the broad phase.
+#[derive(Debug, Default)]
+pub(crate) struct Touch {
+    broad: Broad,
+    proxies: Vec<Proxy>,
+    /// By collider: its outline in the world's axes, and the box around its way, if `seen` is this tick's number.
+    placed: Vec<Placed>,
+    boxes: Vec<Aabb>,
+    seen: Vec<u32>,
+    now: u32,
+    /// Ordered by colliders.
+    pub(crate) pairs: Vec<Pair>,
+}
+
+crate::store::clone_fields!(Touch { broad, proxies, placed, boxes, seen, now, pairs });
+
+impl Touch {
+    pub(crate) fn clear(&mut self) {
+        self.broad.clear();
+        self.pairs.clear();
+    }
+
+    /// Puts a collider where its body is now; after it was created, teleported, or changed its kind or filter.
+    pub(crate) fn set(&mut self, slot: usize, bodies: &Bodies, colliders: &Colliders) {
+        let body = colliders.rows.value(slot).body;
+        let reach = colliders.outline(slot).reach;
+        if self.proxies.len() <= slot {
+            let slots = slot.saturating_add(1);
+            self.proxies.resize(slots, Proxy::default());
+            self.placed.resize_with(slots, Placed::default);
+            self.boxes.resize(slots, Aabb::default());
+            self.seen.resize(slots, 0);
+        }
+        self.proxies[slot] = Proxy { body, reach };
+        let at = body as usize;
+        if bodies.cold.value(at).kind == BodyKind::Static {
+            let placed = Placed::new(colliders.outline(slot), Rot::new(bodies.angle.get(at)));
+            self.broad.set_fixed(slot as u32, around(bodies.position(at), placed.min, placed.max));
+        } else {
+            self.broad.set_moving(slot as u32, around(bodies.position(at), [reach.saturating_neg(); 2], [reach; 2]));
+        }
+        self.broad.touch(slot as u32);
+    }
+
+    pub(crate) fn remove(&mut self, slot: usize) {
+        self.broad.remove(slot as u32);
+    }
+
+    /// Finds the pairs of this tick.
+    pub(crate) fn find(&mut self, bodies: &Bodies, colliders: &Colliders, contacts: &Contacts, margins: Margins) {
+        self.pairs.clear();
+        if colliders.rows.live() == 0 {
+            return;
+        }
+        let shift = common_way(bodies, margins.tick);
+        let proxies = &self.proxies;
+        let swept = |slot: u32| {
+            let Proxy { body, reach } = proxies[slot as usize];
+            let out = reach.saturating_add(margins.base);
+            sweep(bodies, body as usize, [out.saturating_neg(); 2], [out; 2], margins.tick)
+        };
+        self.broad.update(shift, swept, |a, b| wanted(bodies, colliders, a as usize, b as usize));
+
+        self.now = self.now.wrapping_add(1);
+        let mut old = 0;
+        for at in 0..self.broad.candidates().len() {
+            let (a, b) = self.broad.candidates()[at];
+            self.place(a as usize, bodies, colliders, margins);
+            self.place(b as usize, bodies, colliders, margins);
+            if !self.boxes[a as usize].overlaps(&self.boxes[b as usize]) {
+                continue;
+            }
+            let body = [self.proxies[a as usize].body, self.proxies[b as usize].body];
+            let Some(manifold) = self.meet([a as usize, b as usize], body, bodies, colliders, margins) else {
+                continue;
+            };
+            while old < contacts.len() && contacts.key(old) < (a, b) {
+                old = old.saturating_add(1);
+            }
+            let ids = (colliders.id(a as usize), colliders.id(b as usize));
+            let known = old < contacts.len() && contacts.ids(old) == ids;
+            let old = if known { old as u32 } else { NEW };
+            self.pairs.push(Pair { colliders: [a, b], bodies: body, manifold, old });
+        }
+    }
+
+    /// The outline and the box of a collider in this tick.
+    fn place(&mut self, slot: usize, bodies: &Bodies, colliders: &Colliders, margins: Margins) {
+        if self.seen[slot] == self.now {
+            return;
+        }
+        self.seen[slot] = self.now;
+        let Proxy { body, reach } = self.proxies[slot];
+        let at = body as usize;
+        let placed = Placed::new(colliders.outline(slot), Rot::new(bodies.angle.get(at)));
+        // Turning moves no point farther than this, and none out of reach.
+        let rim = way(rim_speed(bodies.omega.get(at).to_bits(), reach), margins.tick);
+        let out = rim.saturating_add(margins.base);
+        let min = placed.min.map(|m| m.max(reach.saturating_neg()).saturating_sub(out));
+        let max = placed.max.map(|m| m.min(reach).saturating_add(out));
+        self.boxes[slot] = sweep(bodies, at, min, max, margins.tick);
+        self.placed[slot] = placed;
+    }
+
+    /// The manifold of two colliders whose boxes overlap; one without points for a sensor.
+    fn meet(
+        &self,
+        [a, b]: [usize; 2],
+        [body_a, body_b]: [u32; 2],
+        bodies: &Bodies,
+        colliders: &Colliders,
+        margins: Margins,
+    ) -> Option<Manifold> {
+        let (placed_a, placed_b) = (&self.placed[a], &self.placed[b]);
+        let (body_a, body_b) = (body_a as usize, body_b as usize);
+        let between = |c: &[i64]| c[body_b].saturating_sub(c[body_a]);
+        let d = [between(bodies.x.bits()), between(bodies.y.bits())];
+        if colliders.rows.value(a).sensor || colliders.rows.value(b).sensor {
+            return overlap(placed_a, placed_b, d).then(Manifold::default);
+        }
+        let (vx, vy, omega) = (bodies.vx.bits(), bodies.vy.bits(), bodies.omega.bits());
+        let v = [vx[body_a].saturating_sub(vx[body_b]), vy[body_a].saturating_sub(vy[body_b])];
+        let rim = |slot: usize, body: usize| rim_speed(omega[body], self.proxies[slot].reach);
+        let fastest = [v[0].saturating_abs(), v[1].saturating_abs(), rim(a, body_a), rim(b, body_b)];
+        let fastest = fastest.iter().fold(0i64, |sum, &speed| sum.saturating_add(speed));
+        let limit = margins.base.saturating_add(way(fastest, margins.tick));
+        let mut manifold = collide(placed_a, placed_b, d, limit);
+
+        // Of the points beyond the margin, those that the ways of this tick bring near.
+        let n = manifold.normal.map(i64::from);
+        let mut kept = 0;
+        for at in 0..manifold.count as usize {
+            let point = manifold.points[at];
+            if point.separation > margins.base {
+                let arm_b = [point.arm[0].saturating_sub(d[0]), point.arm[1].saturating_sub(d[1])];
+                let turning = |body: usize, arm: [i64; 2]| mul(omega[body], cross(arm, n, 30), 32);
+                let speed =
+                    dot(v, n, 30).saturating_add(turning(body_a, point.arm)).saturating_sub(turning(body_b, arm_b));
+                if point.separation.saturating_add(way(speed, margins.tick)) > margins.base {
+                    continue;
+                }
+            }
+            manifold.points[kept] = point;
+            kept = kept.saturating_add(1);
+        }
+        manifold.count = kept as u8;
+        (kept > 0).then_some(manifold)
+    }
+
+    /// The contacts after the step: `outcome` says of a pair, by its place, what the solver made of it. What began and
+    /// ended goes to `events`; `next` is where the list is built.
+    pub(crate) fn finish(
+        &self,
+        contacts: &mut Contacts,
+        next: &mut Contacts,
+        colliders: &Colliders,
+        events: &mut Vec<Event>,
+        outcome: impl Fn(usize) -> Contact,
+    ) {
+        events.clear();
+        next.clear();
+        let mut old = 0;
+        let end = |contact: Contact, events: &mut Vec<Event>| {
+            if contact.touching {
+                let kind = if contact.sensor { EventKind::SensorEnd } else { EventKind::ContactEnd };
+                events.push(Event { kind, a: contact.a, b: contact.b });
+            }
+        };
+        for (at, pair) in self.pairs.iter().enumerate() {
+            let [a, b] = pair.colliders;
+            while old < contacts.len() && (old as u32 != pair.old && contacts.key(old) <= (a, b)) {
+                end(contacts.get(old), events);
+                old = old.saturating_add(1);
+            }
+            let before = if pair.old == NEW { Contact::default() } else { contacts.get(old) };
+            old = old.saturating_add(usize::from(pair.old != NEW));
+            let (a, b) = (colliders.id(a as usize), colliders.id(b as usize));
+            let contact = if pair.manifold.count > 0 {
+                Contact { a, b, ..outcome(at) }
+            } else {
+                Contact { a, b, touching: true, sensor: true, ..Contact::default() }
+            };
+            match (before.touching, contact.touching) {
+                (false, true) if contact.sensor => events.push(Event { kind: EventKind::SensorBegin, a, b }),
+                (false, true) => events.push(Event { kind: EventKind::ContactBegin, a, b }),
+                (true, false) => end(before, events),
+                _ => {}
+            }
+            if contact.touching || contact.normal != [0; 2] || contact.tangent != [0; 2] {
+                next.push(&contact);
+            }
+        }
+        for at in old..contacts.len() {
+            end(contacts.get(at), events);
+        }
+        core::mem::swap(contacts, next);
+    }
+}
+
+/// Whether two colliders have anything to do with each other.
+fn wanted(bodies: &Bodies, colliders: &Colliders, a: usize, b: usize) -> bool {
+    let (a, b) = (colliders.rows.value(a), colliders.rows.value(b));
+    if a.body == b.body || !a.filter.meets(b.filter) || a.sensor && b.sensor {
+        return false;
+    }
+    let dynamic = |body: u32| bodies.cold.value(body as usize).is_dynamic();
+    a.sensor || b.sensor || dynamic(a.body) || dynamic(b.body)
+}
+
+/// The speed of a point at `reach` of a body that turns with `omega`, Q48 m/s.
+fn rim_speed(omega: i64, reach: i64) -> i64 {
+    mul(omega.saturating_abs(), reach, 32)
+}
+
+/// The box from `min` to `max` about a point.
+fn around(point: Vec2<Length>, min: [i64; 2], max: [i64; 2]) -> Aabb {
+    let at = |p: Length, by: i64| Length::from_bits(p.to_bits().saturating_add(by));
+    Aabb {
+        min: Vec2::new(at(point.x, min[0]), at(point.y, min[1])),
+        max: Vec2::new(at(point.x, max[0]), at(point.y, max[1])),
+    }
+}
+
+/// The box around a box from `min` to `max` about a body and its way in this tick.
+fn sweep(bodies: &Bodies, body: usize, min: [i64; 2], max: [i64; 2], tick: i64) -> Aabb {
+    let ways = [way(bodies.vx.bits()[body], tick), way(bodies.vy.bits()[body], tick)];
+    let stretch = |bound: [i64; 2], pick: fn(i64, i64) -> i64| {
+        [bound[0].saturating_add(pick(ways[0], 0)), bound[1].saturating_add(pick(ways[1], 0))]
+    };
+    around(bodies.position(body), stretch(min, i64::min), stretch(max, i64::max))
+}
+
+/// About how far the bodies go together in this tick: a hint for the broad phase.
+fn common_way(bodies: &Bodies, tick: i64) -> [i64; 2] {
+    let mean = |column: &[i64]| {
+        let (sum, moving) = column
+            .iter()
+            .filter(|&&v| v != 0)
+            .fold((0i128, 0i128), |(sum, n), &v| (sum.saturating_add(v.into()), n.saturating_add(1)));
+        sum.checked_div(moving).unwrap_or(0) as i64
+    };
+    [way(mean(bodies.vx.bits()), tick), way(mean(bodies.vy.bits()), tick)]
+}

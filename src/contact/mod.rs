@@ -1,0 +1,9 @@
+//! Contacts: what persists of two colliders that touch, which of them do in this tick, and what a game is told of it.
+
+mod event;
+mod find;
+mod row;
+
+pub use event::{Event, EventKind};
+pub(crate) use find::{Margins, NEW, Pair, Touch};
+pub(crate) use row::{Contact, Contacts};

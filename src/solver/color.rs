@@ -1,0 +1,67 @@
+//! Colours: contacts of one colour share no body that moves, so a sweep may solve them side by side.
+//!
+//! The colouring is part of the algorithm: it follows from the order of the contacts alone.
+
+use crate::num::lane::next;
+
+/// Contacts of two bodies that move take the lowest free colour from 0 on, those with one take the lowest from
+/// [`GROUND`] on, so that what stands on the ground is solved last and holds best.
+const GROUND: u32 = 20;
+const COLORS: u32 = 32;
+/// Contacts that no colour is free for: one at a time, after the others.
+pub(crate) const REST: usize = COLORS as usize;
+
+/// Where each contact goes: block and lane.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Colors {
+    /// By mover: the colours that its contacts have.
+    used: Vec<u32>,
+    /// By contact.
+    color: Vec<u8>,
+    /// By contact: 8·block + lane.
+    pub(crate) seats: Vec<u32>,
+    /// How many blocks there are.
+    pub(crate) blocks: usize,
+}
+
+impl Colors {
+    /// Colours contacts, given in order as the places of their two bodies. Static and kinematic bodies do not move by
+    /// contacts: `free` says, by place, that a body needs no colour of its own.
+    pub(crate) fn assign(&mut self, places: &[[u32; 2]], free: &[bool]) {
+        self.used.clear();
+        self.used.resize(free.len(), 0);
+        self.color.clear();
+        self.seats.clear();
+        let mut counts = [0usize; REST + 1];
+        for &[a, b] in places {
+            let (a_free, b_free) = (free[a as usize], free[b as usize]);
+            let of = |place: u32, free: bool| if free { 0 } else { self.used[place as usize] };
+            let taken = of(a, a_free) | of(b, b_free);
+            let from = if a_free || b_free { GROUND } else { 0 };
+            let color = (!taken & (u32::MAX << from)).trailing_zeros() as usize;
+            if color < REST {
+                for (place, free) in [(a, a_free), (b, b_free)] {
+                    if !free {
+                        self.used[place as usize] |= 1 << color;
+                    }
+                }
+            }
+            self.color.push(color as u8);
+            counts[color] = next(counts[color]);
+        }
+        // The first seat of each colour; every colour begins with a new block, the rest have one each.
+        let mut seats = [0u32; REST + 1];
+        let mut blocks = 0usize;
+        for color in 0..=REST {
+            seats[color] = (blocks as u32).saturating_mul(8);
+            let size = if color == REST { counts[color] } else { counts[color].div_ceil(8) };
+            blocks = blocks.saturating_add(size);
+        }
+        self.blocks = blocks;
+        for &color in &self.color {
+            let color = color as usize;
+            self.seats.push(seats[color]);
+            seats[color] = seats[color].saturating_add(if color == REST { 8 } else { 1 });
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! How a body yields to impulses, without a reciprocal of mass or inertia: derived by commands.
+//!
+//! A row carries λ̂ = k·λ in m/s instead of the impulse λ, where k = 1/m_a + 1/m_b + a_a²/I_a + a_b²/I_b, and a body carries
+//! w = σ·ω in m/s with a length σ of its own. With S = 1/m_a + 1/m_b, p = (1/m)/S, α = a/σ and τ = σ²·m/I, everything is a
+//! ratio: κ = k/S = 1 + p_a·τ_a·α_a² + p_b·τ_b·α_b², a body's velocity changes by p·d·(λ̂/κ) and its w by p·τ·α·(λ̂/κ). So any
+//! mass and size fits 32 bits, and only ratios of masses matter.
+
+use crate::body::{BodyData, BodyKind, gyration};
+use crate::num::{div, lane, mul_div, round_shift};
+
+/// The σ of a body, its τ, and its mass as a ratio's part.
+///
+/// | field | format | bound |
+/// |---|---|---|
+/// | `mantissa`, `exponent` | mass = mantissa·2^exponent Q64 kg, 34 bits | 0 for what impulses do not move |
+/// | `sigma` | Q32 m | between reach/7.9 and reach, so that α ≤ 7.9 |
+/// | `tau` | Q28 | below (120/7.9)² = 231 |
+/// | `inverse`, `inverse_shift` | 2^shift/σ, 62 bits | – |
+/// | `scale`, `scale_shift` | 2⁵⁸ over σ brought to 2²⁸ … 2²⁹ by a shift right, 30 bits | – |
+/// | `reach` | Q32 m | – |
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Mobility {
+    mantissa: i64,
+    exponent: u32,
+    pub(crate) sigma: i64,
+    pub(crate) tau: i64,
+    inverse: i64,
+    inverse_shift: u32,
+    scale: i64,
+    scale_shift: i32,
+    pub(crate) reach: i64,
+    /// Whether its velocities are always zero: its body is static.
+    pub(crate) fixed: bool,
+}
+
+const MANTISSA_BITS: u32 = 34;
+
+impl Mobility {
+    pub(crate) fn new(data: &BodyData) -> Mobility {
+        let reach = data.reach.to_bits();
+        let fixed = data.kind == BodyKind::Static;
+        if reach == 0 {
+            return Mobility { fixed, ..Mobility::default() };
+        }
+        let rho = gyration(data.mass, data.inertia).min(i64::MAX as u64) as i64;
+        // 7.9 = 79/10, rounded up so that α stays below it.
+        let least = reach.saturating_mul(10).saturating_add(78) / 79;
+        let sigma = if data.fixed_rotation { reach } else { rho.max(least).min(reach).max(1) };
+        let (mut mantissa, mut exponent, mut tau) = (0, 0, 0);
+        if data.is_dynamic() {
+            let mass = data.mass.to_bits();
+            exponent = (128u32).saturating_sub(mass.leading_zeros()).saturating_sub(MANTISSA_BITS);
+            mantissa = round_shift(mass, exponent) as i64;
+            if !data.fixed_rotation {
+                let square = i128::from(sigma).saturating_mul(sigma.into());
+                tau = (mul_div(square, mass, data.inertia.to_bits()) >> 36) as i64;
+            }
+        }
+        let inverse_shift = 62u32.saturating_add(sigma.ilog2());
+        let inverse = div(1 << inverse_shift, sigma.into()) as i64;
+        let scale_shift = (sigma.ilog2() as i32).saturating_sub(28);
+        let scale = div(1 << 58, lane::shifted(sigma, scale_shift).into()) as i64;
+        Mobility { mantissa, exponent, sigma, tau, inverse, inverse_shift, scale, scale_shift, reach, fixed }
+    }
+
+    /// Whether impulses move it.
+    pub(crate) fn moves(&self) -> bool {
+        self.mantissa != 0
+    }
+
+    /// The part p of the first of two bodies, Q28: that of the other is 2²⁸ minus it. At least one must move.
+    pub(crate) fn share(&self, other: &Mobility) -> i32 {
+        const ONE: i64 = 1 << 28;
+        match (self.moves(), other.moves()) {
+            (true, false) => ONE as i32,
+            (false, _) => 0,
+            (true, true) => {
+                // p = m_b/(m_a + m_b), of mantissas brought to the greater exponent.
+                let top = self.exponent.max(other.exponent);
+                let part = |m: &Mobility| m.mantissa >> (top.saturating_sub(m.exponent)).min(63);
+                let (a, b) = (part(self), part(other));
+                let sum = a.saturating_add(b);
+                // 2³⁵ · 2²⁸ fits.
+                (b.saturating_mul(ONE).saturating_add(sum >> 1) / sum) as i32
+            }
+        }
+    }
+
+    /// An arm over σ, Q28, from an arm in Q32 m: below 8 in magnitude. Error: 2⁻²⁸.
+    #[inline]
+    pub(crate) fn relative(&self, arm: [i64; 2]) -> [i32; 2] {
+        const LIMIT: i64 = (8 << 28) - 1;
+        // At most 7.9·2²⁹ < 2³², times 2³⁰.
+        arm.map(|r| {
+            let r = lane::clamp(lane::shifted(r, self.scale_shift), -(1 << 32), 1 << 32);
+            lane::clamp(lane::round::<30>(r.saturating_mul(self.scale)), -LIMIT, LIMIT) as i32
+        })
+    }
+
+    /// A length over σ: `value / 2^from` m as a number with `to` fraction bits, for |value| < 2⁶³.
+    pub(crate) fn over_sigma(&self, value: i64, from: u32, to: u32) -> i64 {
+        // value·2^-from·2^32/σ, and 2^32/σ = inverse·2^(32 − inverse_shift).
+        let product = i128::from(value).saturating_mul(self.inverse.into());
+        let shift = self.inverse_shift.saturating_add(from).saturating_sub(to).saturating_sub(32);
+        crate::num::clamp_i64(round_shift(product, shift))
+    }
+}

@@ -1,0 +1,251 @@
+//! Bodies as the rows see them, for one tick: velocities in full, positions as what changed since the tick began.
+
+use super::bounce::Bounce;
+use super::mobility::Mobility;
+use super::scales::{SPEED_MAX, Scales};
+use crate::body::Bodies;
+use crate::geom::Vec2;
+use crate::motion::{Bound, Fault, turn_by};
+use crate::num::{Angle, AngularVelocity, Length, Quantity, Velocity, add_sat, clamp_i64, div, lane, mul, round_shift};
+
+/// What rows read and write.
+///
+/// | field | format | bound |
+/// |---|---|---|
+/// | `v`, `w` | Q48 m/s over 2^k; w = σ·ω | 2⁶⁰ |
+/// | `d`, `phi` | Q26 m over 2^k since the tick began; φ = σ·θ | 2³⁰ |
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Mover {
+    pub(crate) v: [i64; 2],
+    pub(crate) w: i64,
+    pub(crate) d: [i32; 2],
+    pub(crate) phi: i32,
+}
+
+/// What else a mover needs from substep to substep. Velocities x, y and w as above.
+#[derive(Clone, Copy, Debug, Default)]
+struct Course {
+    /// At the beginning of the tick, and of the substep.
+    start: [i64; 3],
+    begin: [i64; 3],
+    /// What forces other than contacts add in each substep.
+    kick: [i64; 3],
+    /// What the bound of speed took away in this substep.
+    cut: [i64; 3],
+    /// The sum of the velocities read, Q20: the way over h.
+    sum: [i64; 3],
+    /// The bound of w.
+    spin_max: i64,
+    slot: u32,
+    /// Whether a contact pushed it in this tick.
+    hit: bool,
+    slowed: bool,
+}
+
+/// The bodies of this tick's contacts. The first is one that does not move, for all static bodies.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Movers {
+    pub(crate) lanes: Vec<Mover>,
+    courses: Vec<Course>,
+    /// By slot of a body: its place here; 0 for none.
+    places: Vec<u32>,
+}
+
+impl Movers {
+    /// Forgets those of the last tick.
+    pub(crate) fn clear(&mut self, slots: usize) {
+        for course in &self.courses {
+            if let Some(place) = self.places.get_mut(course.slot as usize) {
+                *place = 0;
+            }
+        }
+        self.places.resize(slots, 0);
+        self.lanes.clear();
+        self.courses.clear();
+        self.lanes.push(Mover::default());
+        self.courses.push(Course { slot: u32::MAX, ..Course::default() });
+    }
+
+    /// The place of the body in a slot; it is taken in at its present velocities.
+    pub(crate) fn place(&mut self, slot: u32, bodies: &Bodies, mobility: &Mobility, scales: &Scales) -> u32 {
+        let at = slot as usize;
+        if self.places[at] != 0 || mobility.fixed {
+            return self.places[at];
+        }
+        let (v, omega) = (bodies.velocity(at), bodies.omega.get(at));
+        let line = |v: Velocity| round_shift(v.to_bits().into(), scales.shift) as i64;
+        let start = [line(v.x), line(v.y), rim(omega, mobility.sigma, scales)];
+        // The rim below the bound of speed, and less than an eighth of a turn in a substep: σ·(π/4)/h.
+        let sigma = i128::from(mobility.sigma);
+        let fast = div(sigma.saturating_mul(SPEED_MAX.into()) << 48, mobility.reach.max(1).into());
+        let eighth = sigma.saturating_mul(scales.rate.into()).saturating_mul(EIGHTH_TURN);
+        let eighth = round_shift(eighth, scales.shift.saturating_add(14));
+        let spin_max = fast.min(eighth) as i64;
+        let place = self.lanes.len() as u32;
+        self.lanes.push(Mover {
+            v: [start[0], start[1]].map(lane::bounded),
+            w: lane::bounded(start[2]),
+            ..Mover::default()
+        });
+        self.courses.push(Course { start, begin: start, spin_max, slot, ..Course::default() });
+        self.places[at] = place;
+        place
+    }
+
+    /// After the bodies have moved as if nothing touched them: what forces do to them in a substep.
+    pub(crate) fn take_kicks(&mut self, bodies: &Bodies, mobilities: &[Mobility], scales: &Scales) {
+        for course in &mut self.courses[1..] {
+            let slot = course.slot as usize;
+            let (v, omega) = (bodies.velocity(slot), bodies.omega.get(slot));
+            let line = |v: Velocity| round_shift(v.to_bits().into(), scales.shift) as i64;
+            let end = [line(v.x), line(v.y), rim(omega, mobilities[slot].sigma, scales)];
+            for axis in 0..3 {
+                let change = i128::from(end[axis]).saturating_sub(course.start[axis].into());
+                course.kick[axis] = lane::bounded(div(change, scales.substeps.into()) as i64);
+            }
+        }
+    }
+
+    /// A substep begins: forces, and the impulses of the last substep once more.
+    ///
+    /// What contacts did to a body in a substep is the sum of its rows' accumulated impulses, so adding that again is
+    /// warm starting, without going through the rows. In the first substep the rows have added theirs already.
+    pub(crate) fn begin(&mut self, first: bool) {
+        for (mover, course) in self.lanes.iter_mut().zip(&mut self.courses).skip(1) {
+            let now = [mover.v[0], mover.v[1], mover.w];
+            let mut next = now;
+            for axis in 0..3 {
+                next[axis] = add_sat(now[axis], course.kick[axis]);
+                if !first {
+                    let pushed = now[axis]
+                        .saturating_sub(course.begin[axis])
+                        .saturating_sub(course.kick[axis])
+                        .saturating_add(course.cut[axis]);
+                    next[axis] = add_sat(next[axis], pushed);
+                    course.begin[axis] = now[axis];
+                }
+                next[axis] = lane::bounded(next[axis]);
+            }
+            (mover.v, mover.w) = ([next[0], next[1]], next[2]);
+        }
+    }
+
+    /// Positions by the velocities that rows read, after bounding these.
+    pub(crate) fn drift(&mut self, scales: &Scales) {
+        const LIMIT: i64 = SPEED_MAX << 48;
+        for (mover, course) in self.lanes.iter_mut().zip(&mut self.courses).skip(1) {
+            let limits = [LIMIT, LIMIT, course.spin_max];
+            let now = [mover.v[0], mover.v[1], mover.w];
+            let mut kept = now;
+            for axis in 0..3 {
+                kept[axis] = lane::clamp(now[axis], limits[axis].saturating_neg(), limits[axis]);
+                course.cut[axis] = now[axis].saturating_sub(kept[axis]);
+                course.slowed |= course.cut[axis] != 0;
+                course.sum[axis] = course.sum[axis].saturating_add(lane::read(kept[axis]).into());
+            }
+            (mover.v, mover.w) = ([kept[0], kept[1]], kept[2]);
+            // Q20 sums below 2³⁶ times h in Q30 below 2²⁷, to Q26.
+            let way = |sum: i64| lane::round_to::<24>(sum.saturating_mul(scales.coarse));
+            mover.d = [way(course.sum[0]), way(course.sum[1])];
+            mover.phi = way(course.sum[2]);
+        }
+    }
+
+    /// By place, whether impulses leave it as it is.
+    pub(crate) fn yielding(&self, mobilities: &[Mobility], free: &mut Vec<bool>) {
+        let place = |course: &Course| mobilities.get(course.slot as usize).is_none_or(|m| !m.moves());
+        free.clear();
+        free.extend(self.courses.iter().map(place));
+    }
+
+    /// The speed of approach below which a contact is left to the rows, Q48: half of what forces add to the bodies in the
+    /// tick, for a bounce that ends within it; and 1 mm/s, or 0.1 m/s where nothing bounces.
+    pub(crate) fn still(&self, bounce: &Bounce, scales: &Scales) -> i64 {
+        let least = if bounce.target == [0; 2] { ONE / 10 } else { ONE / 1000 };
+        if bounce.elastic {
+            return least;
+        }
+        let kick = bounce.bodies.iter().flat_map(|&place| {
+            let [x, y, _] = self.courses[place as usize].kick;
+            [x.saturating_abs(), y.saturating_abs()]
+        });
+        let kick = kick.fold(0i64, i64::saturating_add).saturating_mul(scales.substeps.into());
+        least.max(kick / 2)
+    }
+
+    /// Notes that a contact pushed these bodies.
+    pub(crate) fn hit(&mut self, places: [u32; 2]) {
+        for place in places {
+            self.courses[place as usize].hit = true;
+        }
+    }
+
+    /// What contacts made of the bodies that they pushed, instead of what free motion did. Bodies that nothing pushed
+    /// keep that, which is exact.
+    pub(crate) fn store(
+        &self,
+        bodies: &mut Bodies,
+        before: &[[i64; 6]],
+        mobilities: &[Mobility],
+        scales: &Scales,
+        faults: &mut Vec<Fault>,
+    ) {
+        for ((mover, course), before) in self.lanes.iter().zip(&self.courses).zip(before).skip(1) {
+            let slot = course.slot as usize;
+            let mobility = &mobilities[slot];
+            if !course.hit || !mobility.moves() {
+                continue;
+            }
+            if course.slowed {
+                faults.push(Fault { slot, bound: Bound::ContactSpeed });
+            }
+            let k = scales.shift;
+            let [x, y, angle, vx, vy, omega] = *before;
+            let mut place = |from: i64, sum: i64| {
+                let moved = from.saturating_add(mul(sum, scales.line, 51u32.saturating_sub(k)));
+                let kept = moved.clamp(Length::MIN.to_bits(), Length::MAX.to_bits());
+                if kept != moved {
+                    faults.push(Fault { slot, bound: Bound::Position });
+                }
+                Length::from_bits(kept)
+            };
+            let position = Vec2::new(place(x, course.sum[0]), place(y, course.sum[1]));
+            bodies.set_position(slot, position);
+            // φ/2π in 2^k m with 50 fraction bits, then over σ as turns with 48.
+            let rolled = mul(course.sum[2], scales.turn, 33);
+            let (turned, over) = turn_by(angle, mobility.over_sigma(rolled, 50u32.saturating_sub(k), 48));
+            bodies.angle.set(slot, Angle::from_bits(turned));
+            if over {
+                faults.push(Fault { slot, bound: Bound::Turns });
+            }
+            let line = |from: i64, start: i64, end: i64| {
+                let change = i128::from(end).saturating_sub(start.into()) << k;
+                clamp_i64(i128::from(from).saturating_add(change))
+            };
+            let v = [line(vx, course.start[0], mover.v[0]), line(vy, course.start[1], mover.v[1])];
+            bodies.set_velocity(slot, Vec2::new(Velocity::from_bits(v[0]), Velocity::from_bits(v[1])));
+            let spun = mobility.over_sigma(mover.w.saturating_sub(course.start[2]), 48u32.saturating_sub(k), 48);
+            bodies.omega.set(slot, AngularVelocity::from_bits(add_sat(omega, spun)));
+        }
+    }
+
+    /// Position, angle and velocities of each, to go on from.
+    pub(crate) fn remember(&self, bodies: &Bodies, before: &mut Vec<[i64; 6]>) {
+        let Bodies { cold: _, x, y, vx, vy, angle, omega } = bodies;
+        let columns = [x.bits(), y.bits(), angle.bits(), vx.bits(), vy.bits(), omega.bits()];
+        before.clear();
+        before.push([0; 6]);
+        before.extend(self.courses[1..].iter().map(|course| columns.map(|column| column[course.slot as usize])));
+    }
+}
+
+/// 1 m/s.
+const ONE: i64 = 1 << 48;
+
+/// π/4 with 30 fraction bits.
+const EIGHTH_TURN: i128 = 843_314_857;
+
+/// w = σ·ω over 2^k, Q48.
+fn rim(omega: AngularVelocity, sigma: i64, scales: &Scales) -> i64 {
+    mul(omega.to_bits(), sigma, scales.shift.saturating_add(32))
+}
