@@ -5,8 +5,10 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use tamias2d::{Attractor, BodyDef, BodyKind, ColliderDef, Commands, Shape, Vec2, World, WorldDef};
 
-/// `count` free bodies on a grid, each with its own velocity and spin.
-fn free_bodies(count: u32, gravity: f64) -> World {
+/// `count` free bodies on a grid, each with its own velocity and spin, with or without a box of 1 m.
+fn free_bodies(count: u32, gravity: f64, solid: bool) -> World {
+    let one = "1".parse().expect("in range");
+    let shape = Shape::Box { width: one, height: one };
     let gravity = Vec2::from_f64(0.0, gravity).expect("in range");
     let mut world = World::new(&WorldDef { gravity, ..WorldDef::default() }).expect("accepted");
     for i in 0..count {
@@ -16,6 +18,7 @@ fn free_bodies(count: u32, gravity: f64) -> World {
                 position: Vec2::from_f64(3.0 * column, 3.0 * row).expect("in range"),
                 velocity: Vec2::from_f64(0.01 * row - 0.3, 0.02 * column).expect("in range"),
                 angular_velocity: "0.75".parse().expect("in range"),
+                colliders: if solid { vec![ColliderDef::new(shape.clone())] } else { Vec::new() },
                 ..BodyDef::default()
             })
             .expect("accepted");
@@ -49,10 +52,12 @@ fn pyramid(rows: u32) -> World {
 fn step(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");
     for count in [100, 1_000, 10_000, 100_000] {
-        let mut world = free_bodies(count, -9.8);
-        group.bench_function(BenchmarkId::new("free", count), |b| b.iter(|| world.step()));
+        for (name, solid) in [("free", false), ("free, with colliders", true)] {
+            let mut world = free_bodies(count, -9.8, solid);
+            group.bench_function(BenchmarkId::new(name, count), |b| b.iter(|| world.step()));
+        }
     }
-    let mut world = free_bodies(1_000, 0.0);
+    let mut world = free_bodies(1_000, 0.0, false);
     let star =
         Attractor { position: Vec2::from_f64(0.0, -500.0).expect("in range"), mu: "1000".parse().expect("in range") };
     world.create_attractor(star).expect("accepted");
@@ -64,7 +69,7 @@ fn step(c: &mut Criterion) {
     group.finish();
 
     let mut group = c.benchmark_group("state");
-    let world = free_bodies(10_000, -9.8);
+    let world = free_bodies(10_000, -9.8, false);
     group.bench_function("hash/10000", |b| b.iter(|| black_box(world.hash())));
     let mut copy = world.clone();
     group.bench_function("clone_from/10000", |b| b.iter(|| copy.clone_from(black_box(&world))));

@@ -326,7 +326,7 @@ fn bad_colliders_are_refused_with_their_place() {
 
 /// x of the last row that is about `name`.
 fn last_x(output: &Output, name: &str) -> f64 {
-    let row = output.out.lines().filter(|line| line.split(',').nth(2) == Some(name)).next_back();
+    let row = output.out.lines().rfind(|line| line.split(',').nth(2) == Some(name));
     row.expect("a row").split(',').nth(3).expect("a field").parse().expect("a number")
 }
 

@@ -3,8 +3,8 @@
 use super::colliders::center_at;
 use crate::geom::Vec2;
 use crate::num::{
-    Angle, AngularVelocity, Damping, Force, Inertia, Length, Mass, Mu, Quantity, RangeError, Torque, Velocity, mul_div,
-    sqrt,
+    Angle, AngularVelocity, Damping, Density, Force, Inertia, Length, Mass, Mu, Quantity, RangeError, Torque, Velocity,
+    mul_div, sqrt,
 };
 use crate::shape::{ColliderDef, MassData, ShapeError};
 use crate::store::{Row, record, record_enum};
@@ -270,24 +270,41 @@ impl BodyDef {
             (None, Some(_), Some(_)) => Vec2::default(),
             (None, _, _) => solid.center,
         };
-        for value in [center.x, center.y] {
-            if value.to_bits().unsigned_abs() > CENTER_MAX {
-                return Err(BodyError::Center { value });
-            }
-        }
+        check_center(center)?;
         let inertia = match self.inertia {
             Some(inertia) => inertia,
             // Of the same distribution of mass: I is in the ratio of the masses.
-            None if any => Inertia::from_bits(mul_div(solid.about(center), mass.to_bits(), solid.mass)),
+            None if any => {
+                let solid = self.enlarged(solid.mass);
+                Inertia::from_bits(mul_div(solid.about(center), mass.to_bits(), solid.mass))
+            }
             None => Inertia::from_bits(mass.to_bits()),
         };
         inertia.checked()?;
         Ok((mass, inertia, center))
     }
+
+    /// The colliders' masses with all densities multiplied by a power of two, so that I/m of a small body keeps its
+    /// digits: m has about 90 bits then, and I, m·r² with r below 2¹⁵ m, less than 121.
+    fn enlarged(&self, mass: i128) -> MassData {
+        let bits = |value: i128| 128u32.saturating_sub(value.leading_zeros());
+        let densest = self.colliders.iter().map(|c| c.density.to_bits()).max().unwrap_or(1);
+        let up = 90u32.saturating_sub(bits(mass)).min(126u32.saturating_sub(bits(densest)));
+        let mut colliders = self.colliders.clone();
+        for collider in &mut colliders {
+            collider.density = Density::from_bits(collider.density.to_bits() << up);
+        }
+        MassData::of(&colliders)
+    }
 }
 
-/// 16 000 m.
-const CENTER_MAX: u64 = 16_000 << 32;
+fn check_center(center: Vec2<Length>) -> Result<(), BodyError> {
+    const MAX: u64 = 16_000 << 32;
+    match [center.x, center.y].into_iter().find(|value| value.to_bits().unsigned_abs() > MAX) {
+        Some(value) => Err(BodyError::Center { value }),
+        None => Ok(()),
+    }
+}
 
 /// The radius of gyration √(I/m) in Q32 m; saturates at 2³¹·⁵ m.
 pub(crate) fn gyration(mass: Mass, inertia: Inertia) -> u64 {
@@ -317,7 +334,17 @@ impl BodyData {
     /// Ranges of its own values, and what its kind allows of them and of its velocities.
     pub(crate) fn check(&self, velocity: Vec2<Velocity>, omega: AngularVelocity) -> Result<(), BodyError> {
         let BodyData {
-            kind, fixed_rotation, mass, inertia, force, torque, linear_damping, angular_damping, mu, ..
+            kind,
+            fixed_rotation,
+            mass,
+            inertia,
+            center,
+            force,
+            torque,
+            linear_damping,
+            angular_damping,
+            mu,
+            ..
         } = self;
         mass.checked()?;
         inertia.checked()?;
@@ -342,6 +369,7 @@ impl BodyData {
         if *fixed_rotation && *torque != Torque::ZERO {
             return Err(BodyError::FixedRotation { quantity: Torque::NAME });
         }
+        check_center(*center)?;
         self.check_gyration(*kind, *fixed_rotation)
     }
 }

@@ -58,13 +58,30 @@ pub(crate) struct Touch {
     /// By collider: its outline in the world's axes, and the box around its way, if `seen` is this tick's number.
     placed: Vec<Placed>,
     boxes: Vec<Aabb>,
-    seen: Vec<u32>,
-    now: u32,
+    seen: Vec<u64>,
+    now: u64,
     /// Ordered by colliders.
     pub(crate) pairs: Vec<Pair>,
 }
 
-crate::store::clone_fields!(Touch { broad, proxies, placed, boxes, seen, now, pairs });
+impl Clone for Touch {
+    fn clone(&self) -> Self {
+        let mut copy = Touch::default();
+        copy.clone_from(self);
+        copy
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        let Touch { broad, proxies, placed, boxes: _, seen: _, now: _, pairs: _ } = source;
+        self.broad.clone_from(broad);
+        self.proxies.clone_from(proxies);
+        // What was placed for a tick is placed anew in the next one.
+        self.make_room(placed.len());
+        self.seen.fill(0);
+        self.now = 0;
+        self.pairs.clear();
+    }
+}
 
 impl Touch {
     pub(crate) fn clear(&mut self) {
@@ -79,9 +96,7 @@ impl Touch {
         if self.proxies.len() <= slot {
             let slots = slot.saturating_add(1);
             self.proxies.resize(slots, Proxy::default());
-            self.placed.resize_with(slots, Placed::default);
-            self.boxes.resize(slots, Aabb::default());
-            self.seen.resize(slots, 0);
+            self.make_room(slots);
         }
         self.proxies[slot] = Proxy { body, reach };
         let at = body as usize;
@@ -92,6 +107,12 @@ impl Touch {
             self.broad.set_moving(slot as u32, around(bodies.position(at), [reach.saturating_neg(); 2], [reach; 2]));
         }
         self.broad.touch(slot as u32);
+    }
+
+    fn make_room(&mut self, slots: usize) {
+        self.placed.resize_with(slots, Placed::default);
+        self.boxes.resize(slots, Aabb::default());
+        self.seen.resize(slots, 0);
     }
 
     pub(crate) fn remove(&mut self, slot: usize) {
@@ -145,11 +166,12 @@ impl Touch {
         let Proxy { body, reach } = self.proxies[slot];
         let at = body as usize;
         let placed = Placed::new(colliders.outline(slot), Rot::new(bodies.angle.get(at)));
-        // Turning moves no point farther than this, and none out of reach.
+        // Turning moves no point farther than this, and none out of reach: so this box is within the one that the broad
+        // phase was given, or its history would decide what is found.
         let rim = way(rim_speed(bodies.omega.get(at).to_bits(), reach), margins.tick);
-        let out = rim.saturating_add(margins.base);
-        let min = placed.min.map(|m| m.max(reach.saturating_neg()).saturating_sub(out));
-        let max = placed.max.map(|m| m.min(reach).saturating_add(out));
+        let base = if bodies.cold.value(at).kind == BodyKind::Static { 0 } else { margins.base };
+        let min = placed.min.map(|m| m.saturating_sub(rim).max(reach.saturating_neg()).saturating_sub(base));
+        let max = placed.max.map(|m| m.saturating_add(rim).min(reach).saturating_add(base));
         self.boxes[slot] = sweep(bodies, at, min, max, margins.tick);
         self.placed[slot] = placed;
     }
@@ -185,10 +207,15 @@ impl Touch {
             let point = manifold.points[at];
             if point.separation > margins.base {
                 let arm_b = [point.arm[0].saturating_sub(d[0]), point.arm[1].saturating_sub(d[1])];
-                let turning = |body: usize, arm: [i64; 2]| mul(omega[body], cross(arm, n, 30), 32);
-                let speed =
-                    dot(v, n, 30).saturating_add(turning(body_a, point.arm)).saturating_sub(turning(body_b, arm_b));
-                if point.separation.saturating_add(way(speed, margins.tick)) > margins.base {
+                // Turning brings a point nearer by no more than what its reach is beyond where it is now.
+                let turning = |collider: usize, body: usize, arm: [i64; 2], side: i64| {
+                    let speed = mul(omega[body], cross(arm, n, 30), 32).saturating_mul(side);
+                    let left = self.proxies[collider].reach.saturating_add(dot(arm, n, 30).saturating_mul(side)).max(0);
+                    way(speed, margins.tick).max(left.saturating_neg())
+                };
+                let turned = turning(a, body_a, point.arm, 1).saturating_add(turning(b, body_b, arm_b, -1));
+                let nearer = way(dot(v, n, 30), margins.tick).saturating_add(turned);
+                if point.separation.saturating_add(nearer) > margins.base >> 3 {
                     continue;
                 }
             }

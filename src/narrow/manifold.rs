@@ -47,12 +47,12 @@ pub(crate) fn collide(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Manifo
         return single(circle::from_circle(a, b, d, limit), true, d);
     }
     // Boxes apart: most pairs of a broad phase with margins end here.
-    for axis in 0..2 {
-        let right = b.min[axis].wrapping_add(d[axis]).wrapping_sub(a.max[axis]);
-        let left = a.min[axis].wrapping_sub(d[axis]).wrapping_sub(b.max[axis]);
-        if right > limit || left > limit {
-            return Manifold::default();
-        }
+    let apart = |axis: usize| {
+        b.min[axis].wrapping_add(d[axis]).wrapping_sub(a.max[axis]) > limit
+            || a.min[axis].wrapping_sub(d[axis]).wrapping_sub(b.max[axis]) > limit
+    };
+    if apart(0) || apart(1) {
+        return Manifold::default();
     }
     if b.count <= 1 {
         single(circle::from_polygon(a, b, d, limit), true, d)

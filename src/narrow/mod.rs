@@ -18,7 +18,7 @@ mod query;
 mod tests;
 mod unit;
 
-pub(crate) use manifold::{Manifold, collide};
+pub(crate) use manifold::{Manifold, Point, collide};
 pub(crate) use overlap::overlap;
 pub(crate) use query::{Hit, closest, contains, ray};
 

@@ -2,34 +2,24 @@
 //!
 //! | value | format | bound | kept by |
 //! |---|---|---|---|
-//! | velocity of a body | Q48, i64 | 2⁶⁰ (4096 m/s) | [`bounded`] |
-//! | velocity read | Q20, i32 | 2³⁰ (1024 m/s) | [`read`] |
+//! | velocity of a body in the sweeps | Q48, i64 | 2⁵⁷ (512 m/s) | [`held`] |
+//! | velocity read, or a difference of two | Q20, i32 | 2²⁹, 2³⁰ | [`held`] |
 //! | coefficient | Q28, i32 | 2³¹ (8) | preparation |
+//! | coefficient from row to row | Q27, i32 | 11·2²⁷ | preparation |
 //! | impulse λ̂ | Q20, i32 | 2²⁹ (512 m/s) | [`clamp`] |
-//! | position delta, separation | Q26, i32 | 2³⁰ (16 m) | [`round_to`] |
+//! | position delta, separation | Q26, i32 | 2³⁰ (16 m) | [`round_to`], [`limit`] |
 //!
-//! A coefficient times a read has 48 fraction bits, the state's own, so what a row adds to a velocity is exact. Sums:
-//! a relative velocity is two products below 2⁵⁸, two below 2⁶¹ and two below 2⁵⁸: below 2⁶³. A body's velocity plus all
-//! that one contact adds is 2⁶⁰ + 2·2⁶⁰ + 2·2⁶¹ < 2⁶³. In builds with overflow checks the sums below check that.
-
-/// A velocity with 48 fraction bits as a read with 20, to nearest and odd, limited to ±2³⁰.
-#[inline(always)]
-pub(crate) const fn read(v: i64) -> i32 {
-    round_to::<28>(v)
-}
+//! A coefficient times a read has 48 fraction bits, the state's own, so what a row adds to a velocity is exact. A row's
+//! impulse changes by 2²⁹ along a normal, by 2³⁰ along a tangent. Sums: the speed of a second point is two products below
+//! 2⁵⁸, of the normal's components, two below 2⁶⁰, of arms, and what two impulses add: 11·2⁵⁸ and 11·2⁵⁷ + 2⁵⁷. That is
+//! 27·2⁵⁸ < 2⁶³. A w plus all that one contact adds is 2⁵⁷ + 2⁶¹ + 2·2⁶⁰ < 2⁶³; a v is less. In builds with overflow
+//! checks the sums below check that.
 
 /// `v / 2^SHIFT` to nearest and odd, limited to ±2³⁰. Range: |v| + 2^(SHIFT−1) < 2⁶³.
 #[inline(always)]
 pub(crate) const fn round_to<const SHIFT: u32>(v: i64) -> i32 {
-    let rounded = (v + (1 << (SHIFT - 1)) + (v >> 63)) >> SHIFT;
-    // One comparison that is nearly never true, where a minimum and a maximum would be six instructions each time.
-    if (rounded + READ_MAX) as u64 > 2 * READ_MAX as u64 {
-        return if v < 0 { -READ_MAX as i32 } else { READ_MAX as i32 };
-    }
-    rounded as i32
+    limit(round::<SHIFT>(v))
 }
-
-const READ_MAX: i64 = 1 << 30;
 
 /// `v / 2^SHIFT` to nearest and odd. Range: |v| < 2⁶².
 #[inline(always)]
@@ -61,14 +51,44 @@ pub(crate) const fn sub(a: i64, b: i64) -> i64 {
     a - b
 }
 
-/// A body's velocity, limited to ±2⁶⁰. Range: |v| < 2⁶² + 2⁶⁰.
+/// A body's velocity between ticks, limited to ±2⁶⁰. Range: |v| < 2⁶² + 2⁶⁰.
 #[inline(always)]
 pub(crate) const fn bounded(v: i64) -> i64 {
-    const LIMIT: i64 = 1 << 60;
-    if (v.wrapping_add(LIMIT)) as u64 > 2 * LIMIT as u64 {
-        return if v < 0 { -LIMIT } else { LIMIT };
+    clamp(v, -(1 << 60), 1 << 60)
+}
+
+/// A body's velocities in the sweeps, limited to ±2⁵⁷. Range: |v| < 2⁶³ − 2⁵⁷.
+#[inline(always)]
+pub(crate) fn held(v: [i64; 3]) -> [i64; 3] {
+    const LIMIT: i64 = 1 << 57;
+    // One comparison for all three that is nearly never true.
+    if ((v[0] + LIMIT) | (v[1] + LIMIT) | (v[2] + LIMIT)) as u64 >= 2 * LIMIT as u64 {
+        return v.map(|v| clamp(v, -LIMIT, LIMIT));
     }
     v
+}
+
+/// `value`, limited to ±2³⁰.
+#[inline(always)]
+pub(crate) const fn limit(value: i64) -> i32 {
+    const MAX: i64 = 1 << 30;
+    // One comparison that is nearly never true, where a minimum and a maximum would be six instructions each time.
+    if (value + MAX) as u64 > 2 * MAX as u64 {
+        return if value < 0 { -MAX as i32 } else { MAX as i32 };
+    }
+    value as i32
+}
+
+/// A speed, and what an impulse adds to it by a coefficient with 27 fraction bits.
+#[inline(always)]
+pub(crate) const fn coupled(speed: i64, coefficient: i32, impulse: i32) -> i64 {
+    speed + 2 * mul(coefficient, impulse)
+}
+
+/// An overlap beyond the slop, not positive: of a separation of at least −2³⁰.
+#[inline(always)]
+pub(crate) const fn deeper(separation: i32, slop: i32) -> i32 {
+    if separation < -slop { separation + slop } else { 0 }
 }
 
 /// `value` limited to `low ..= high`.

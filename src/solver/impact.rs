@@ -2,8 +2,8 @@
 
 use crate::geom::Vec2;
 use crate::num::{
-    AngularVelocity, Impulse, Inertia, Length, Mass, Quantity, RangeError, Restitution, Velocity, clamp_i64,
-    cross_wide, div, hypot, mul, mul_div,
+    AngularVelocity, Decimal, Impulse, Inertia, Length, Mass, Quantity, RangeError, Restitution, Velocity, cross_wide,
+    div, hypot, mul_div, round_shift,
 };
 use core::fmt;
 
@@ -96,17 +96,21 @@ pub fn impact(a: &Striker, b: &Striker, normal: Vec2<Length>, restitution: Resti
     }
     restitution.checked()?;
     let [nx, ny] = [normal.x.to_bits(), normal.y.to_bits()];
-    let length = i128::from(hypot(nx, ny));
-    if length == 0 {
+    let most = nx.unsigned_abs() | ny.unsigned_abs();
+    if most == 0 {
         return Err(ImpactError::ZeroNormal);
     }
+    // Made as long as it can be, so that rounding its length does not show.
+    let up = most.leading_zeros().saturating_sub(2);
+    let [nx, ny] = [nx << up, ny << up];
+    let length = i128::from(hypot(nx, ny));
     // Unit, Q62.
     let n = [nx, ny].map(|c| div(i128::from(c) << 62, length) as i64);
     let [va, vb] = [a, b].map(Striker::at_point);
-    let between = |axis: usize| i128::from(va[axis]).saturating_sub(vb[axis].into());
+    let between = |axis: usize| va[axis].saturating_sub(vb[axis]);
     let along = |axis: usize| mul_div(between(axis), n[axis].into(), 1 << 62);
     let speed = along(0).saturating_add(along(1));
-    let speed_before = Velocity::from_bits(clamp_i64(speed)).checked()?;
+    let speed_before = Velocity::from_bits(within::<Velocity>(speed)?);
     if speed >= 0 {
         return Ok(Impact { impulse: Vec2::default(), speed_before, a: *a, b: *b });
     }
@@ -115,11 +119,19 @@ pub fn impact(a: &Striker, b: &Striker, normal: Vec2<Length>, restitution: Resti
     let whole = a.weight(mass, n).saturating_add(b.weight(mass, n));
     let closing = speed.saturating_neg().saturating_mul(i128::from(restitution.to_bits()).saturating_add(1 << 48));
     // Q96 to Q64, times m over the weights.
-    let j = mul_div(crate::num::round_shift(closing, 32), mass.to_bits(), whole);
+    let j = mul_div(round_shift(closing, 32), mass.to_bits(), whole);
     let vector = n.map(|n| mul_div(j, n.into(), 1 << 62));
     let impulse = Vec2::new(Impulse::from_bits(vector[0]).checked()?, Impulse::from_bits(vector[1]).checked()?);
     let (a, b) = (a.struck(vector)?, b.struck(vector.map(i128::saturating_neg))?);
     Ok(Impact { impulse, speed_before, a, b })
+}
+
+/// Bits of a quantity of 64 bits, if they are in its range.
+fn within<Q: Quantity>(bits: i128) -> Result<i64, RangeError> {
+    if bits < Q::MIN.wide_bits() || bits > Q::MAX.wide_bits() {
+        return Err(RangeError::new::<Q>(Decimal { bits, frac: Q::FRAC }));
+    }
+    Ok(bits as i64)
 }
 
 impl Striker {
@@ -141,10 +153,11 @@ impl Striker {
     }
 
     /// The velocity of the point: v + ω·(−r_y, r_x) (DD:chaslesThm), Q48.
-    fn at_point(&self) -> [i64; 2] {
-        let omega = self.angular_velocity.to_bits();
-        let turned = [self.arm.y.to_bits().saturating_neg(), self.arm.x.to_bits()].map(|r| mul(omega, r, 32));
-        [self.velocity.x.to_bits().saturating_add(turned[0]), self.velocity.y.to_bits().saturating_add(turned[1])]
+    fn at_point(&self) -> [i128; 2] {
+        let omega = i128::from(self.angular_velocity.to_bits());
+        let turned = |r: Length| round_shift(omega.saturating_mul(r.to_bits().into()), 32);
+        let (x, y) = (i128::from(self.velocity.x.to_bits()), i128::from(self.velocity.y.to_bits()));
+        [x.saturating_sub(turned(self.arm.y)), y.saturating_add(turned(self.arm.x))]
     }
 
     /// m/m_i + (r × n)²·m/I_i, Q64.
@@ -162,16 +175,17 @@ impl Striker {
     /// It after an impulse, Q64.
     fn struck(&self, impulse: [i128; 2]) -> Result<Striker, RangeError> {
         let mut after = *self;
-        let faster = |bits: i64, change: i128| clamp_i64(i128::from(bits).saturating_add(change));
         if let Some(mass) = self.mass {
             let change = impulse.map(|j| mul_div(j, 1 << 48, mass.to_bits()));
-            after.velocity.x = Velocity::from_bits(faster(self.velocity.x.to_bits(), change[0]));
-            after.velocity.y = Velocity::from_bits(faster(self.velocity.y.to_bits(), change[1]));
+            let faster = |v: Velocity, change: i128| within::<Velocity>(change.saturating_add(v.to_bits().into()));
+            let [x, y] = [faster(self.velocity.x, change[0])?, faster(self.velocity.y, change[1])?];
+            after.velocity = Vec2::new(Velocity::from_bits(x), Velocity::from_bits(y));
         }
         if let Some(inertia) = self.inertia {
             let moment = cross_wide([self.arm.x.to_bits().into(), self.arm.y.to_bits().into()], impulse, 32);
             let change = mul_div(moment, 1 << 48, inertia.to_bits());
-            after.angular_velocity = AngularVelocity::from_bits(faster(self.angular_velocity.to_bits(), change));
+            let spun = change.saturating_add(self.angular_velocity.to_bits().into());
+            after.angular_velocity = AngularVelocity::from_bits(within::<AngularVelocity>(spun)?);
         }
         Ok(after)
     }

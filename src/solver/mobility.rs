@@ -81,7 +81,7 @@ impl Mobility {
                 let (a, b) = (part(self), part(other));
                 let sum = a.saturating_add(b);
                 // 2³⁵ · 2²⁸ fits.
-                (b.saturating_mul(ONE).saturating_add(sum >> 1) / sum) as i32
+                b.saturating_mul(ONE).saturating_add(sum >> 1).checked_div(sum).unwrap_or(0) as i32
             }
         }
     }
@@ -90,9 +90,10 @@ impl Mobility {
     #[inline]
     pub(crate) fn relative(&self, arm: [i64; 2]) -> [i32; 2] {
         const LIMIT: i64 = (8 << 28) - 1;
-        // At most 7.9·2²⁹ < 2³², times 2³⁰.
+        // The middle of a gap may be farther from a tiny body than its arms are counted. At most 8·2²⁹, times 2³⁰.
+        let most = self.sigma << 3;
         arm.map(|r| {
-            let r = lane::clamp(lane::shifted(r, self.scale_shift), -(1 << 32), 1 << 32);
+            let r = lane::shifted(lane::clamp(r, most.saturating_neg(), most), self.scale_shift);
             lane::clamp(lane::round::<30>(r.saturating_mul(self.scale)), -LIMIT, LIMIT) as i32
         })
     }

@@ -7,12 +7,13 @@ use crate::body::Bodies;
 use crate::geom::Vec2;
 use crate::motion::{Bound, Fault, turn_by};
 use crate::num::{Angle, AngularVelocity, Length, Quantity, Velocity, add_sat, clamp_i64, div, lane, mul, round_shift};
+use core::mem::replace;
 
 /// What rows read and write.
 ///
 /// | field | format | bound |
 /// |---|---|---|
-/// | `v`, `w` | Q48 m/s over 2^k; w = σ·ω | 2⁶⁰ |
+/// | `v`, `w` | Q48 m/s over 2^k; w = σ·ω | 2⁵⁷ |
 /// | `d`, `phi` | Q26 m over 2^k since the tick began; φ = σ·θ | 2³⁰ |
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Mover {
@@ -82,12 +83,9 @@ impl Movers {
         let eighth = round_shift(eighth, scales.shift.saturating_add(14));
         let spin_max = fast.min(eighth) as i64;
         let place = self.lanes.len() as u32;
-        self.lanes.push(Mover {
-            v: [start[0], start[1]].map(lane::bounded),
-            w: lane::bounded(start[2]),
-            ..Mover::default()
-        });
-        self.courses.push(Course { start, begin: start, spin_max, slot, ..Course::default() });
+        let begin = start.map(lane::bounded);
+        self.lanes.push(Mover { v: [begin[0], begin[1]], w: begin[2], ..Mover::default() });
+        self.courses.push(Course { start, begin, spin_max, slot, ..Course::default() });
         self.places[at] = place;
         place
     }
@@ -99,34 +97,28 @@ impl Movers {
             let (v, omega) = (bodies.velocity(slot), bodies.omega.get(slot));
             let line = |v: Velocity| round_shift(v.to_bits().into(), scales.shift) as i64;
             let end = [line(v.x), line(v.y), rim(omega, mobilities[slot].sigma, scales)];
-            for axis in 0..3 {
+            course.kick = [0, 1, 2].map(|axis| {
                 let change = i128::from(end[axis]).saturating_sub(course.start[axis].into());
-                course.kick[axis] = lane::bounded(div(change, scales.substeps.into()) as i64);
-            }
+                lane::bounded(div(change, scales.substeps.into()) as i64)
+            });
         }
     }
 
     /// A substep begins: forces, and the impulses of the last substep once more.
     ///
     /// What contacts did to a body in a substep is the sum of its rows' accumulated impulses, so adding that again is
-    /// warm starting, without going through the rows. In the first substep the rows have added theirs already.
+    /// warm starting, without going through the rows: forces and contacts together did now − begin + cut. In the first
+    /// substep the rows have added theirs already.
     pub(crate) fn begin(&mut self, first: bool) {
         for (mover, course) in self.lanes.iter_mut().zip(&mut self.courses).skip(1) {
             let now = [mover.v[0], mover.v[1], mover.w];
-            let mut next = now;
-            for axis in 0..3 {
-                next[axis] = add_sat(now[axis], course.kick[axis]);
-                if !first {
-                    let pushed = now[axis]
-                        .saturating_sub(course.begin[axis])
-                        .saturating_sub(course.kick[axis])
-                        .saturating_add(course.cut[axis]);
-                    next[axis] = add_sat(next[axis], pushed);
-                    course.begin[axis] = now[axis];
-                }
-                next[axis] = lane::bounded(next[axis]);
-            }
-            (mover.v, mover.w) = ([next[0], next[1]], next[2]);
+            let change = if first {
+                course.kick
+            } else {
+                let begin = replace(&mut course.begin, now);
+                [0, 1, 2].map(|axis| lane::add(lane::sub(now[axis], begin[axis]), course.cut[axis]))
+            };
+            [mover.v[0], mover.v[1], mover.w] = lane::held([0, 1, 2].map(|axis| lane::add(now[axis], change[axis])));
         }
     }
 
@@ -136,16 +128,19 @@ impl Movers {
         for (mover, course) in self.lanes.iter_mut().zip(&mut self.courses).skip(1) {
             let limits = [LIMIT, LIMIT, course.spin_max];
             let now = [mover.v[0], mover.v[1], mover.w];
-            let mut kept = now;
-            for axis in 0..3 {
-                kept[axis] = lane::clamp(now[axis], limits[axis].saturating_neg(), limits[axis]);
-                course.cut[axis] = now[axis].saturating_sub(kept[axis]);
-                course.slowed |= course.cut[axis] != 0;
-                course.sum[axis] = course.sum[axis].saturating_add(lane::read(kept[axis]).into());
+            let over = |axis: usize| now[axis].unsigned_abs() > limits[axis].unsigned_abs();
+            course.cut = [0; 3];
+            if over(0) || over(1) || over(2) {
+                let kept = [0, 1, 2].map(|axis| lane::clamp(now[axis], limits[axis].saturating_neg(), limits[axis]));
+                course.cut = [0, 1, 2].map(|axis| lane::sub(now[axis], kept[axis]));
+                course.slowed = true;
+                [mover.v[0], mover.v[1], mover.w] = kept;
             }
-            (mover.v, mover.w) = ([kept[0], kept[1]], kept[2]);
-            // Q20 sums below 2³⁶ times h in Q30 below 2²⁷, to Q26.
-            let way = |sum: i64| lane::round_to::<24>(sum.saturating_mul(scales.coarse));
+            for (sum, v) in course.sum.iter_mut().zip([mover.v[0], mover.v[1], mover.w]) {
+                *sum = lane::add(*sum, lane::round::<28>(v));
+            }
+            // At most 400 m/s for as many substeps as the tick has, Q20, times h in Q30: below 2⁵⁹; to Q26.
+            let way = |sum: i64| lane::round_to::<24>(lane::times(scales.coarse, sum));
             mover.d = [way(course.sum[0]), way(course.sum[1])];
             mover.phi = way(course.sum[2]);
         }
@@ -181,7 +176,7 @@ impl Movers {
     }
 
     /// What contacts made of the bodies that they pushed, instead of what free motion did. Bodies that nothing pushed
-    /// keep that, which is exact.
+    /// keep that, which is exact, unless they are faster than the rows can follow.
     pub(crate) fn store(
         &self,
         bodies: &mut Bodies,
@@ -193,7 +188,7 @@ impl Movers {
         for ((mover, course), before) in self.lanes.iter().zip(&self.courses).zip(before).skip(1) {
             let slot = course.slot as usize;
             let mobility = &mobilities[slot];
-            if !course.hit || !mobility.moves() {
+            if !(course.hit || course.slowed) || !mobility.moves() {
                 continue;
             }
             if course.slowed {

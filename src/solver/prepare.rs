@@ -6,7 +6,8 @@ use super::mover::Mover;
 use super::rows::{Block, Row};
 use super::scales::Scales;
 use crate::contact::{Contact, Pair};
-use crate::num::{clamp_i64, lane, mul, round_shift};
+use crate::narrow::Point;
+use crate::num::{lane, mul, round_shift};
 
 /// Two bodies with contact points, and what is the same for all their rows.
 pub(crate) struct Joint<'p> {
@@ -23,7 +24,8 @@ pub(crate) struct Joint<'p> {
     normal: [i32; 2],
 }
 
-/// One row's lever: α of both, p·τ·α of both, κ; Q28.
+/// One row's lever: α of both, p·τ·α of both, κ; Q28. Of a point that is not there, all zero.
+#[derive(Default)]
 struct Lever {
     arm: [i32; 2],
     turn: [i64; 2],
@@ -41,19 +43,27 @@ impl<'p> Joint<'p> {
         Joint { pair, places, between, mobility, share, inertia, normal }
     }
 
-    /// α of both bodies along the normal and along the tangent (−n_y, n_x) at a point: r × n, and r × t = r·n.
-    fn arms(&self, arm: [i64; 2]) -> [[i32; 2]; 2] {
-        let arm_b = [arm[0].saturating_sub(self.between[0]), arm[1].saturating_sub(self.between[1])];
+    /// α of both bodies along the normal and along the tangent (−n_y, n_x) at a point: r × n, and r × t = r·n. Across a
+    /// gap each body has the point on its own surface, where it will be when the gap has closed.
+    fn arms(&self, point: &Point) -> [[i32; 2]; 2] {
+        const LIMIT: i64 = (8 << 28) - 1;
+        let half = point.separation.max(0) >> 1;
+        let out = self.pair.manifold.normal.map(|n| mul(half, n.into(), 30));
         let [nx, ny] = self.normal;
-        let [a, b] = [arm, arm_b].map(|_| [0; 2]);
-        let mut arms = [a, b];
-        for (body, r) in [(0, arm), (1, arm_b)] {
-            if self.places[body] == 0 {
+        let mut arms = [[0; 2]; 2];
+        for (body, place) in self.places.into_iter().enumerate() {
+            if place == 0 {
                 continue;
             }
+            let r = [0, 1].map(|axis: usize| match body {
+                0 => point.arm[axis].saturating_add(out[axis]),
+                _ => point.arm[axis].saturating_sub(self.between[axis]).saturating_sub(out[axis]),
+            });
             let [x, y] = self.mobility[body].relative(r);
-            arms[0][body] = lane::round::<28>(lane::sub(lane::mul(x, ny), lane::mul(y, nx))) as i32;
-            arms[1][body] = lane::round::<28>(lane::add(lane::mul(x, nx), lane::mul(y, ny))) as i32;
+            let along = lane::round::<28>(lane::sub(lane::mul(x, ny), lane::mul(y, nx)));
+            let across = lane::round::<28>(lane::add(lane::mul(x, nx), lane::mul(y, ny)));
+            arms[0][body] = lane::clamp(along, -LIMIT, LIMIT) as i32;
+            arms[1][body] = lane::clamp(across, -LIMIT, LIMIT) as i32;
         }
         arms
     }
@@ -73,19 +83,29 @@ impl<'p> Joint<'p> {
             (block.reply[0][axis][i], block.reply[1][axis][i]) = (part(0), part(1).saturating_neg());
         }
         let manifold = &self.pair.manifold;
-        for (at, point) in manifold.points[..manifold.count as usize].iter().enumerate() {
-            let [normal, tangent] = self.arms(point.arm).map(|arm| self.lever(arm));
-            let known = (0..old.count as usize).find(|&k| old.ids[k] == point.id);
-            let [normal_start, tangent_start] = known.map_or([0; 2], |k| [old.normal[k], old.tangent[k]]);
-            let rows = &mut block.points[at];
-            let line = rows.normal.put(i, &normal, normal_start);
-            rows.tangent.put(i, &tangent, tangent_start);
+        let points = &manifold.points[..manifold.count as usize];
+        let arms = [0, 1].map(|at| points.get(at).map(|point| self.arms(point)));
+        let lower = usize::from(points.len() > 1 && points[1].separation < points[0].separation);
+        let tangent = arms[lower].map_or(Lever::default(), |[_, arm]| self.lever(arm));
+        let mut carried = 0;
+        for (at, arms) in arms.iter().enumerate() {
+            let normal = arms.map_or(Lever::default(), |[arm, _]| self.lever(arm));
+            let known = points.get(at).and_then(|point| (0..old.count as usize).find(|&k| old.ids[k] == point.id));
+            carried = if known.is_some() { old.tangent[0] } else { carried };
+            let line = block.points[at].put(i, &normal, known.map_or(0, |k| old.normal[k]));
             let ratio = lane::scale(line, tangent.kappa);
-            rows.friction[i] = mul(ratio, friction, 48).min(i32::MAX.into()) as i32;
-            let depth = round_shift(point.separation.into(), scales.shift.saturating_add(6));
-            rows.separation[i] = depth.clamp(-(1 << 30), 1 << 30) as i32;
-            rows.peak[i] = 0;
+            block.limit[at][i] = mul(ratio, friction, 48).min(i32::MAX.into()) as i32;
+            let shift = scales.shift.saturating_add(6) as i32;
+            block.separation[at][i] =
+                points.get(at).map_or(i32::MAX, |point| lane::limit(lane::shifted(point.separation, shift)));
+            // Warm starting has pushed already, and friction may outlast it by a substep.
+            block.peak[at][i] = block.points[at].impulse[i];
         }
+        block.friction.put(i, &tangent, carried);
+        let [first, second] = arms.map(|arms| arms.map_or([0; 2], |[arm, _]| arm));
+        block.couple[0][i] = block.friction.turns(i, first);
+        block.couple[1][i] = block.friction.turns(i, second);
+        block.couple[2][i] = block.points[0].turns(i, second);
     }
 
     /// How the contact is to bounce with this restitution (Q48), if it approaches.
@@ -102,7 +122,7 @@ impl<'p> Joint<'p> {
         let (bodies, share, inertia) = (self.places, self.share, self.inertia);
         let mut bounce = Bounce { row, bodies, normal: manifold.normal, share, inertia, ..Bounce::default() };
         for (at, point) in manifold.points[..manifold.count as usize].iter().enumerate() {
-            let [arm, _] = self.arms(point.arm);
+            let [arm, _] = self.arms(point);
             let speed = approach(a, b, manifold.normal, arm);
             bounce.arm[at] = arm;
             bounce.speed = bounce.speed.min(speed);
@@ -120,7 +140,7 @@ impl<'p> Joint<'p> {
 impl Row {
     /// Takes a lever, and the impulse λ̂ = κ·(λ·S) that the last tick left. 1/κ.
     fn put(&mut self, i: usize, lever: &Lever, start: i64) -> i32 {
-        // κ is at least 2²⁸.
+        // κ is at least 2²⁸, or 0.
         let line = (1i64 << 56).saturating_add(lever.kappa >> 1).checked_div(lever.kappa).unwrap_or(0) as i32;
         self.line[i] = line;
         for body in 0..2 {
@@ -129,10 +149,17 @@ impl Row {
         }
         self.impulse[i] = 0;
         if start != 0 {
-            let impulse = round_shift(i128::from(start).saturating_mul(lever.kappa.into()), 56);
-            self.impulse[i] = clamp_i64(impulse).clamp(-(1 << 29), 1 << 29) as i32;
+            self.impulse[i] = mul(start, lever.kappa, 56).clamp(-(1 << 29), 1 << 29) as i32;
         }
         line
+    }
+
+    /// What an impulse of this row adds by turning to the speed of a row with other arms, Q27. Limited to 11, which bodies
+    /// of even density stay far below: beyond, a row learns of the rest in the next sweep, from w.
+    fn turns(&self, i: usize, arm: [i32; 2]) -> i32 {
+        const LIMIT: i64 = 11 << 27;
+        let part = |body: usize| lane::mul(self.turn[body][i], arm[body]);
+        lane::clamp(lane::round::<29>(lane::add(part(0), part(1))), -LIMIT, LIMIT) as i32
     }
 
     /// λ·S, exactly: the product of λ̂ and 1/κ.

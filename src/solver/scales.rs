@@ -23,7 +23,7 @@ const SOFT: Softness = Softness { bias: 48_321_781, mass: 1_021_964_838, impulse
 /// The bound of a body's speed in substeps with contacts, lanes' metres per second.
 pub(crate) const SPEED_MAX: i64 = 400;
 /// The overlap that is left alone: 0.1 mm, 26 fraction bits.
-pub(crate) const SLOP: i64 = 6711;
+pub(crate) const SLOP: i32 = 6711;
 /// The speed with which overlaps are pushed apart at most: 1 m/s, 20 fraction bits.
 const PUSH: i64 = 1 << 20;
 /// The distance at which contacts are looked for: 2 cm, 32 fraction bits.
@@ -41,9 +41,11 @@ pub(crate) struct Scales {
     pub(crate) line: i64,
     pub(crate) turn: i64,
     /// h with 30 fraction bits, for the positions that rows read.
-    pub(crate) coarse: i64,
-    /// bias/h in 1/s, 16 fraction bits.
-    pub(crate) push_rate: i64,
+    pub(crate) coarse: i32,
+    /// 1/h and bias/h in 1/s, 14 fraction bits.
+    pub(crate) close_rate: i32,
+    pub(crate) push_rate: i32,
+    /// The bias of overlaps at most, Q20.
     pub(crate) push: i64,
     pub(crate) soft: [i32; 2],
     pub(crate) margins: Margins,
@@ -58,28 +60,12 @@ impl Scales {
             rate,
             line: div(1 << 63, rate.into()) as i64,
             turn: div(TURN_PER_RADIAN_Q64, i128::from(rate).saturating_mul(2)) as i64,
-            coarse: div(1 << 30, rate.into()) as i64,
-            push_rate: round_shift(i128::from(SOFT.bias).saturating_mul(rate.into()), 14) as i64,
-            push: PUSH,
+            coarse: div(1 << 30, rate.into()) as i32,
+            close_rate: (rate << 14) as i32,
+            push_rate: round_shift(i128::from(SOFT.bias).saturating_mul(rate.into()), 16) as i32,
+            push: -PUSH,
             soft: [SOFT.mass, SOFT.impulse],
             margins: Margins { base: MARGIN << shift, tick: div(1 << 63, tick_rate.into()) as i64 },
         }
-    }
-}
-
-impl Scales {
-    /// The speed with which a separation (Q26, positive) closes in one substep, Q20, at most 1024 m/s.
-    #[inline(always)]
-    pub(crate) fn to_close(&self, separation: i64) -> i64 {
-        // Below 2³²·2¹⁶.
-        (separation.saturating_mul(self.rate) >> 6).min(1 << 30)
-    }
-
-    /// The speed with which an overlap beyond the slop (Q26) is to open, Q20, as a bias: not positive.
-    #[inline(always)]
-    pub(crate) fn to_open(&self, overlap: i64) -> i64 {
-        // Below 2³²·2²⁸, and 26 + 16 fraction bits to 20.
-        let bias = overlap.min(0).saturating_mul(self.push_rate) >> 22;
-        bias.max(self.push.saturating_neg())
     }
 }

@@ -99,8 +99,9 @@ impl World {
             let ([x0, y0], [x1, y1]) = (part(aabb.min), part(aabb.max));
             let mut window = Placed { count: 4, min: [x0, y0], max: [x1, y1], ..Placed::default() };
             window.vertices[..4].copy_from_slice(&[[x0, y0], [x1, y0], [x1, y1], [x0, y1]]);
-            let one = 1 << 30;
-            window.normals[..4].copy_from_slice(&[[0, -one], [one, 0], [0, one], [-one, 0]]);
+            const ONE: i32 = 1 << 30;
+            const NORMALS: [[i32; 2]; 4] = [[0, -ONE], [ONE, 0], [0, ONE], [-ONE, 0]];
+            window.normals[..4].copy_from_slice(&NORMALS);
             overlap(&placed, &window, [0, 0]).then(|| self.colliders.id(slot))
         };
         self.near(aabb, filter).filter_map(inside).collect()

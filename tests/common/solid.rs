@@ -110,28 +110,32 @@ pub struct Outline {
 
 /// The outlines of all colliders but sensors, in slot order.
 pub fn outlines(world: &World) -> Vec<Outline> {
-    world.colliders().filter(|collider| !collider.is_sensor()).map(|collider| {
-        let (body, def) = (get(world, collider.body()), collider.def());
-        let turn = |(x, y): (f64, f64), angle: Angle| {
-            let (sin, cos) = angle.to_radians_f64().sin_cos();
-            (x * cos - y * sin, x * sin + y * cos)
-        };
-        let place = |p: (f64, f64)| {
-            let (p, offset, origin) = (turn(p, def.angle), def.offset.to_f64(), body.position().to_f64());
-            let p = turn((p.0 + offset.0, p.1 + offset.1), body.angle());
-            [p.0 + origin.0, p.1 + origin.1]
-        };
-        let (local, radius) = match &def.shape {
-            Shape::Circle { radius } => (vec![(0.0, 0.0)], radius.to_f64()),
-            Shape::Box { width, height } => {
-                let (x, y) = (width.to_f64() / 2.0, height.to_f64() / 2.0);
-                (vec![(-x, -y), (x, -y), (x, y), (-x, y)], 0.0)
-            }
-            Shape::Polygon { vertices } => (vertices.iter().map(|v| v.to_f64()).collect(), 0.0),
-        };
-        let points = local.into_iter().map(place).collect();
-        Outline { points, radius, body: body.id(), dynamic: body.kind() == BodyKind::Dynamic }
-    }).collect()
+    world
+        .colliders()
+        .filter(|collider| !collider.is_sensor())
+        .map(|collider| {
+            let (body, def) = (get(world, collider.body()), collider.def());
+            let turn = |(x, y): (f64, f64), angle: Angle| {
+                let (sin, cos) = angle.to_radians_f64().sin_cos();
+                (x * cos - y * sin, x * sin + y * cos)
+            };
+            let place = |p: (f64, f64)| {
+                let (p, offset, origin) = (turn(p, def.angle), def.offset.to_f64(), body.position().to_f64());
+                let p = turn((p.0 + offset.0, p.1 + offset.1), body.angle());
+                [p.0 + origin.0, p.1 + origin.1]
+            };
+            let (local, radius) = match &def.shape {
+                Shape::Circle { radius } => (vec![(0.0, 0.0)], radius.to_f64()),
+                Shape::Box { width, height } => {
+                    let (x, y) = (width.to_f64() / 2.0, height.to_f64() / 2.0);
+                    (vec![(-x, -y), (x, -y), (x, y), (-x, y)], 0.0)
+                }
+                Shape::Polygon { vertices } => (vertices.iter().map(|v| v.to_f64()).collect(), 0.0),
+            };
+            let points = local.into_iter().map(place).collect();
+            Outline { points, radius, body: body.id(), dynamic: body.kind() == BodyKind::Dynamic }
+        })
+        .collect()
 }
 
 /// How far a point is outside a polygon, negative inside, and the nearest point of its border.

@@ -197,11 +197,9 @@ fn a_circle_and_a_polygon_are_as_far_apart_as_in_exact_arithmetic() {
         assert!(near(&wide(point.separation), &separation, tolerance), "{} {separation}", point.separation);
         // From the centre back by the radius and half the gap is the point.
         let back = b.radius + point.separation / 2;
-        for axis in 0..2 {
-            let arm = center[axis] + mul(back, manifold.normal[axis].into(), 30);
-            assert!((arm - point.arm[axis]).abs() <= 1 + tolerance);
-        }
-        if manifold.normal == [0, 0] || !a.normals.contains(&manifold.normal.map(|n| -n)) {
+        let off = |axis: usize| center[axis] + mul(back, manifold.normal[axis].into(), 30) - point.arm[axis];
+        assert!(off(0).abs().max(off(1).abs()) <= 1 + tolerance);
+        if !a.normals.contains(&manifold.normal.map(|n| -n)) {
             corner += 1;
         }
         inside += usize::from(distance < BigInt::ZERO);

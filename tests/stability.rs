@@ -1,0 +1,171 @@
+//! What stands, stands: stacks, pyramids and piles over a minute.
+#![allow(clippy::disallowed_types, clippy::arithmetic_side_effects, reason = "tests, not the engine")]
+
+mod common;
+#[path = "common/solid.rs"]
+mod solid;
+
+use common::{Rng, close, disc, position, rectangle, run, world};
+use solid::{add, fastest, fixed, polygon, scaled_world, solid, turned, worst_overlap};
+use tamias2d::{BodyDef, BodyId, World};
+
+/// A floor whose top is at y = 0.
+fn floor(gy: f64) -> World {
+    let mut world = world(0.0, gy);
+    add(&mut world, fixed(0.0, -1.0, rectangle(60.0, 2.0)));
+    world
+}
+
+/// Boxes of 1 m on each other, each within ±`offset` of the middle.
+fn stack(rows: u32, offset: f64, seed: u64) -> (World, Vec<BodyId>) {
+    let (mut world, mut rng) = (floor(-9.81), Rng(seed));
+    let ids = (0..rows).map(|row| {
+        let x = (rng.unit() * 2.0 - 1.0) * offset;
+        add(&mut world, solid(x, 0.5 + f64::from(row), rectangle(1.0, 1.0)))
+    });
+    let ids = ids.collect();
+    (world, ids)
+}
+
+fn places(world: &World, ids: &[BodyId]) -> Vec<(f64, f64)> {
+    ids.iter().map(|&id| position(world, id)).collect()
+}
+
+/// The greatest way sideways since `start`, and down.
+fn drift(world: &World, ids: &[BodyId], start: &[(f64, f64)]) -> (f64, f64) {
+    ids.iter().zip(start).fold((0.0, 0.0), |(side, down): (f64, f64), (&id, start)| {
+        let (x, y) = position(world, id);
+        (side.max((x - start.0).abs()), down.max(start.1 - y))
+    })
+}
+
+/// Runs for a minute; the greatest way sideways since the start at any second.
+fn stand(world: &mut World, ids: &[BodyId], name: &str) -> f64 {
+    let start = places(world, ids);
+    let mut settled = Vec::new();
+    let (mut side, mut late, mut down) = (0.0f64, 0.0f64, 0.0);
+    for second in 1..=60 {
+        run(world, 60);
+        let moved = drift(world, ids, &start);
+        (side, down) = (side.max(moved.0), moved.1);
+        if second == 2 {
+            settled = places(world, ids);
+        } else if second > 2 {
+            late = late.max(drift(world, ids, &settled).0);
+        }
+    }
+    world.check().expect("every invariant holds");
+    println!("{name}: sideways {side:.2e} m, after 2 s {late:.2e} m, down {down:.5} m, {:.1e} m/s", fastest(world));
+    side
+}
+
+#[test]
+fn a_stack_of_10_stands_a_minute() {
+    for seed in 1..=5 {
+        let (mut world, ids) = stack(10, 0.01, seed);
+        let side = stand(&mut world, &ids, &format!("stack of 10, seed {seed}"));
+        assert!(side < 1e-3, "seed {seed}: it moved {side} m sideways");
+        assert!(fastest(&world) < 1e-4, "seed {seed}: {} m/s", fastest(&world));
+    }
+}
+
+#[test]
+fn a_stack_of_20_sags_less_than_2_cm_in_20_s() {
+    for (offset, seed) in [(0.0, 1), (0.01, 1), (0.01, 2), (0.01, 3)] {
+        let (mut world, ids) = stack(20, offset, seed);
+        let start = places(&world, &ids);
+        run(&mut world, 1200);
+        let (side, down) = drift(&world, &ids, &start);
+        println!("stack of 20, offset {offset}, seed {seed}: {down:.5} m down, {side:.2e} m sideways");
+        assert!(down < 0.02, "offset {offset}, seed {seed}: it sagged by {down} m");
+    }
+}
+
+#[test]
+fn a_pyramid_of_55_stands_a_minute() {
+    let mut world = floor(-9.81);
+    let mut ids = Vec::new();
+    for row in 0..10 {
+        for column in 0..10 - row {
+            let x = f64::from(column) - f64::from(9 - row) * 0.5;
+            ids.push(add(&mut world, solid(x, 0.5 + f64::from(row), rectangle(1.0, 1.0))));
+        }
+    }
+    let side = stand(&mut world, &ids, "pyramid of 55");
+    assert!(side < 1e-3, "it moved {side} m sideways");
+    assert!(fastest(&world) < 1e-4, "{} m/s", fastest(&world));
+}
+
+/// A pile of boxes and polygons between walls, dropped from a grid.
+fn heap(count: u32, discs: bool, seed: u64) -> World {
+    let (mut world, mut rng) = (floor(-9.81), Rng(seed));
+    for x in [-9.0, 9.0] {
+        add(&mut world, fixed(x, 20.0, rectangle(2.0, 44.0)));
+    }
+    for at in 0..count {
+        let size = 0.4 + 0.5 * rng.unit();
+        let shape = match rng.below(4) {
+            0 if discs => disc(size * 0.5),
+            1 => {
+                let corner = |x: f64, y: f64| (x * size, y * size);
+                polygon(&[corner(-0.5, -0.4), corner(0.6, -0.5), corner(0.5, 0.4), corner(-0.1, 0.6)])
+            }
+            _ => rectangle(size, 0.4 + 0.5 * rng.unit()),
+        };
+        let (x, y) = (f64::from(at % 12) * 1.25 - 6.9 + 0.1 * rng.unit(), 1.0 + f64::from(at / 12) * 1.3);
+        add(&mut world, BodyDef { angle: turned(6.0 * rng.unit()), ..solid(x, y, shape) });
+    }
+    world
+}
+
+#[test]
+fn a_settled_pile_of_300_overlaps_less_than_2_cm() {
+    for (discs, seed) in [(false, 1), (true, 2)] {
+        let mut world = heap(300, discs, seed);
+        run(&mut world, 20 * 60);
+        let overlap = worst_overlap(&world);
+        println!("pile of 300, discs {discs}: overlap {overlap:.5} m, {:.1e} m/s", fastest(&world));
+        assert!(overlap < 0.02, "it overlaps by {overlap} m");
+        assert!(world.bodies().all(|body| body.position().y.to_f64() > -2.1), "none fell through the floor");
+        assert!(world.status().is_clear(), "{:?}", world.status());
+        world.check().expect("every invariant holds");
+    }
+}
+
+#[test]
+fn boxes_of_300_pixels_stand_with_a_unit_shift() {
+    // Lengths count pixels: 1 m is 2^6 of them, so gravity is 980.
+    let mut world = scaled_world(0.0, -980.0, 6);
+    add(&mut world, fixed(0.0, -50.0, rectangle(4000.0, 100.0)));
+    let mut rng = Rng(1);
+    let ids: Vec<BodyId> = (0..8)
+        .map(|row| {
+            add(
+                &mut world,
+                solid((rng.unit() * 2.0 - 1.0) * 3.0, 150.0 + 300.0 * f64::from(row), rectangle(300.0, 300.0)),
+            )
+        })
+        .collect();
+    let side = stand(&mut world, &ids, "8 boxes of 300 pixels");
+    // 1 mm by 2^6.
+    assert!(side < 0.064, "it moved {side} pixels sideways");
+    assert!(fastest(&world) < 64e-4, "{} pixels/s", fastest(&world));
+    assert!(world.status().is_clear(), "{:?}", world.status());
+    // And one that falls 1000 pixels lands and rests.
+    let id = add(&mut world, solid(1500.0, 1150.0, rectangle(300.0, 300.0)));
+    run(&mut world, 240);
+    close(position(&world, id).1, 150.0, 0.5);
+}
+
+#[test]
+fn a_stack_of_discs_between_posts_and_a_box_on_discs_stand() {
+    let mut world = floor(-9.81);
+    // Three discs in a row between posts, and a plate of 4 times their mass on them.
+    for x in [-1.75, 1.75] {
+        add(&mut world, fixed(x, 0.5, rectangle(0.5, 1.0)));
+    }
+    let mut ids: Vec<BodyId> = (0..3).map(|at| add(&mut world, solid(f64::from(at) - 1.0, 0.5, disc(0.5)))).collect();
+    ids.push(add(&mut world, solid(0.05, 1.5, rectangle(3.0, 1.0))));
+    let side = stand(&mut world, &ids, "a plate on discs");
+    assert!(side < 1e-3, "it moved {side} m sideways");
+}
