@@ -22,7 +22,8 @@ pub(crate) struct Contact {
     pub(crate) ids: [u8; 2],
     /// The impulse of each point along the normal, not negative.
     pub(crate) normal: [i64; 2],
-    /// The impulse of each point along the tangent, which is the normal turned counter-clockwise.
+    /// The impulse along the tangent, which is the normal turned counter-clockwise. A contact has one, the first; the
+    /// second is zero.
     pub(crate) tangent: [i64; 2],
 }
 
