@@ -15,6 +15,10 @@ impl Friction {
     ///
     /// Rounding: nearest. Range: both are accepted frictions, so not negative.
     pub fn combine(self, other: Friction) -> Friction {
+        // What nearly all pairs are: a root of 128 bits would take longer than a row.
+        if self == other {
+            return self;
+        }
         let product = u128::from(self.to_bits().unsigned_abs()).saturating_mul(other.to_bits().unsigned_abs().into());
         Friction::from_bits(sqrt(product) as i64)
     }

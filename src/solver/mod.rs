@@ -87,8 +87,7 @@ impl Solver {
             let between = [between(bodies.x.bits()), between(bodies.y.bits())];
             let joint = Joint::new(pair, places[row], between, [&mobilities[a], &mobilities[b]]);
             let [first, second] = pair.colliders.map(|slot| colliders.rows.value(slot as usize));
-            let same = first.friction == second.friction;
-            let friction = if same { first.friction } else { first.friction.combine(second.friction) }.to_bits();
+            let friction = first.friction.combine(second.friction).to_bits();
             let old = if pair.old == NEW { Contact::default() } else { contacts.get(pair.old as usize) };
             let seat = colors.seats[row] as usize;
             joint.write(&mut blocks[seat / LANES], seat % LANES, &old, friction, scales);

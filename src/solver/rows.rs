@@ -85,8 +85,8 @@ impl Block {
         (self.bodies, self.pushes) = ([[0; LANES]; 2], 0);
     }
 
-    /// One sweep over the contacts whose bits are set: friction first, then the normals, which must hold. When `BIASED`, overlaps are pushed apart
-    /// through the soft rows; else the rows only stop what approaches.
+    /// One sweep over the contacts whose bits are set: friction first, then the normals, which must hold. When `BIASED`,
+    /// overlaps are pushed apart through the soft rows; else the rows only stop what approaches.
     #[inline(never)]
     pub(crate) fn solve<const BIASED: bool>(&mut self, lanes: u8, movers: &mut [Mover], scales: &Scales) {
         let mut pushes = 0;

@@ -1,5 +1,6 @@
 //! Looking for colliders: rays, points, boxes.
 //!
+//! Range: colliders within 2³⁰ m of where a ray begins or a point is, and rays not longer; beyond, hits are off.
 //! Answers follow from the present state alone and come in a defined order. A query looks at each collider's reach first,
 //! about 3 ns each, and computes what is near exactly.
 
