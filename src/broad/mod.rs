@@ -296,6 +296,14 @@ impl Broad {
         }
     }
 
+    /// Visits every proxy whose box of the last update overlaps `aabb`, and some whose box did not; in no useful order.
+    pub(crate) fn query(&self, aabb: &Aabb, mut visit: impl FnMut(u32)) {
+        let world = Rect::new(aabb);
+        let local = world.seen_from(self.frame);
+        self.fixed.visit(|around| around.overlaps(&world), &mut visit);
+        self.moving.visit(|around| around.overlaps(&local), &mut visit);
+    }
+
     /// The pairs `(a, b)`, a < b, ascending and each once: every wanted pair with a moving proxy in it whose boxes
     /// overlapped in the last update, and some whose boxes did not.
     pub(crate) fn candidates(&self) -> &[(u32, u32)] {

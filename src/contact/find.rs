@@ -8,8 +8,9 @@ use super::row::{Contact, Contacts};
 use crate::body::{Bodies, BodyKind, Colliders};
 use crate::broad::Broad;
 use crate::geom::{Aabb, Rot, Vec2};
+use crate::motion::Drive;
 use crate::narrow::{Manifold, collide, overlap};
-use crate::num::{Length, cross, dot, mul};
+use crate::num::{Length, add_sat, cross, dot, mul};
 use crate::shape::Placed;
 
 /// How far ahead contacts are looked for.
@@ -36,10 +37,39 @@ pub(crate) struct Pair {
     pub(crate) colliders: [u32; 2],
     /// The slots of their bodies.
     pub(crate) bodies: [u32; 2],
-    /// Without points for a sensor.
+    /// Whether one of them is a sensor.
+    pub(crate) sensor: bool,
+    /// Without points for a sensor, and for what is not near but comes near in this tick.
     pub(crate) manifold: Manifold,
     /// Where the pair is among the contacts of the last tick, or [`NEW`].
     pub(crate) old: u32,
+    /// Its place among those with rows, or [`NEW`].
+    pub(crate) row: u32,
+    /// How far they overlap when the tick begins, if they are about to strike; Q32 m.
+    pub(crate) depth: i64,
+    /// Whether it met in an impact.
+    pub(crate) met: bool,
+    /// C_R and the coefficient of friction of the two, Q48.
+    pub(crate) restitution: i64,
+    pub(crate) friction: i64,
+}
+
+impl Pair {
+    pub(crate) fn new(slots: [u32; 2], bodies: [u32; 2], manifold: Manifold, colliders: &Colliders) -> Pair {
+        let [a, b] = slots.map(|slot| colliders.rows.value(slot as usize));
+        Pair {
+            colliders: slots,
+            bodies,
+            sensor: a.sensor || b.sensor,
+            manifold,
+            old: NEW,
+            row: NEW,
+            depth: 0,
+            met: false,
+            restitution: a.restitution.combine(b.restitution).to_bits(),
+            friction: a.friction.combine(b.friction).to_bits(),
+        }
+    }
 }
 
 /// What is known of a collider without looking it up.
@@ -120,7 +150,14 @@ impl Touch {
     }
 
     /// Finds the pairs of this tick.
-    pub(crate) fn find(&mut self, bodies: &Bodies, colliders: &Colliders, contacts: &Contacts, margins: Margins) {
+    pub(crate) fn find(
+        &mut self,
+        bodies: &Bodies,
+        colliders: &Colliders,
+        contacts: &Contacts,
+        drive: &Drive,
+        margins: Margins,
+    ) {
         self.pairs.clear();
         if colliders.rows.live() == 0 {
             return;
@@ -130,7 +167,7 @@ impl Touch {
         let swept = |slot: u32| {
             let Proxy { body, reach } = proxies[slot as usize];
             let out = reach.saturating_add(margins.base);
-            sweep(bodies, body as usize, [out.saturating_neg(); 2], [out; 2], margins.tick)
+            sweep(bodies, drive, body as usize, [out.saturating_neg(); 2], [out; 2], margins.tick)
         };
         self.broad.update(shift, swept, |a, b| wanted(bodies, colliders, a as usize, b as usize));
 
@@ -138,13 +175,13 @@ impl Touch {
         let mut old = 0;
         for at in 0..self.broad.candidates().len() {
             let (a, b) = self.broad.candidates()[at];
-            self.place(a as usize, bodies, colliders, margins);
-            self.place(b as usize, bodies, colliders, margins);
+            self.place(a as usize, bodies, colliders, drive, margins);
+            self.place(b as usize, bodies, colliders, drive, margins);
             if !self.boxes[a as usize].overlaps(&self.boxes[b as usize]) {
                 continue;
             }
             let body = [self.proxies[a as usize].body, self.proxies[b as usize].body];
-            let Some(manifold) = self.meet([a as usize, b as usize], body, bodies, colliders, margins) else {
+            let Some(manifold) = self.meet([a as usize, b as usize], body, bodies, colliders, drive, margins) else {
                 continue;
             };
             while old < contacts.len() && contacts.key(old) < (a, b) {
@@ -153,12 +190,12 @@ impl Touch {
             let ids = (colliders.id(a as usize), colliders.id(b as usize));
             let known = old < contacts.len() && contacts.ids(old) == ids;
             let old = if known { old as u32 } else { NEW };
-            self.pairs.push(Pair { colliders: [a, b], bodies: body, manifold, old });
+            self.pairs.push(Pair { old, ..Pair::new([a, b], body, manifold, colliders) });
         }
     }
 
     /// The outline and the box of a collider in this tick.
-    fn place(&mut self, slot: usize, bodies: &Bodies, colliders: &Colliders, margins: Margins) {
+    fn place(&mut self, slot: usize, bodies: &Bodies, colliders: &Colliders, drive: &Drive, margins: Margins) {
         if self.seen[slot] == self.now {
             return;
         }
@@ -172,17 +209,19 @@ impl Touch {
         let base = if bodies.cold.value(at).kind == BodyKind::Static { 0 } else { margins.base };
         let min = placed.min.map(|m| m.saturating_sub(rim).max(reach.saturating_neg()).saturating_sub(base));
         let max = placed.max.map(|m| m.saturating_add(rim).min(reach).saturating_add(base));
-        self.boxes[slot] = sweep(bodies, at, min, max, margins.tick);
+        self.boxes[slot] = sweep(bodies, drive, at, min, max, margins.tick);
         self.placed[slot] = placed;
     }
 
-    /// The manifold of two colliders whose boxes overlap; one without points for a sensor.
+    /// The manifold of two colliders whose boxes overlap; one without points for a sensor, and for two that are not near
+    /// but may meet in this tick.
     fn meet(
         &self,
         [a, b]: [usize; 2],
         [body_a, body_b]: [u32; 2],
         bodies: &Bodies,
         colliders: &Colliders,
+        drive: &Drive,
         margins: Margins,
     ) -> Option<Manifold> {
         let (placed_a, placed_b) = (&self.placed[a], &self.placed[b]);
@@ -197,8 +236,17 @@ impl Touch {
         let rim = |slot: usize, body: usize| rim_speed(omega[body], self.proxies[slot].reach);
         let fastest = [v[0].saturating_abs(), v[1].saturating_abs(), rim(a, body_a), rim(b, body_b)];
         let fastest = fastest.iter().fold(0i64, |sum, &speed| sum.saturating_add(speed));
-        let limit = margins.base.saturating_add(way(fastest, margins.tick));
+        let [ga, gb] = [drive.gain(body_a, margins.tick), drive.gain(body_b, margins.tick)];
+        let pressed = [0, 1].map(|axis: usize| ga[axis].saturating_sub(gb[axis]).saturating_abs());
+        let pressed = pressed[0].saturating_add(pressed[1]) / 2;
+        let limit = margins.base.saturating_add(way(fastest.saturating_add(pressed), margins.tick));
         let mut manifold = collide(placed_a, placed_b, d, limit);
+        if manifold.count == 0 {
+            return None;
+        }
+        if manifold.points[..manifold.count as usize].iter().all(|point| point.separation > margins.base) {
+            return Some(Manifold::default());
+        }
 
         // Of the points beyond the margin, those that the ways of this tick bring near.
         let n = manifold.normal.map(i64::from);
@@ -223,10 +271,50 @@ impl Touch {
             kept = kept.saturating_add(1);
         }
         manifold.count = kept as u8;
-        (kept > 0).then_some(manifold)
+        Some(manifold)
     }
 
-    /// The contacts after the step: `outcome` says of a pair, by its place, what the solver made of it. What began and
+    /// Where a pair is among those of the tick, or [`NEW`], and whether it has rows.
+    pub(crate) fn pair_of(&self, colliders: [u32; 2]) -> (u32, bool) {
+        match self.pairs.binary_search_by_key(&colliders, |pair| pair.colliders) {
+            Ok(at) => (at as u32, self.pairs[at].row != NEW),
+            Err(_) => (NEW, false),
+        }
+    }
+
+    /// Whether two colliders that meet would push each other.
+    pub(crate) fn may_strike(&self, [a, b]: [u32; 2], bodies: &Bodies, colliders: &Colliders) -> bool {
+        let sensor = |slot: u32| colliders.rows.value(slot as usize).sensor;
+        !sensor(a) && !sensor(b) && wanted(bodies, colliders, a as usize, b as usize)
+    }
+
+    /// Visits all colliders whose [`Touch::way`] overlaps `aabb`, and maybe others.
+    pub(crate) fn around(&self, aabb: &Aabb, visit: impl FnMut(u32)) {
+        self.broad.query(aabb, visit);
+    }
+
+    /// A box that is around the free way of a collider in this tick: from where its body was when the tick began, its
+    /// velocity (Q48) then, and what that gains.
+    pub(crate) fn way(&self, slot: usize, at: [i64; 2], v: [i64; 2], gain: [i64; 2], margins: Margins) -> Aabb {
+        let reach = self.proxies[slot].reach;
+        let at = Vec2::new(Length::from_bits(at[0]), Length::from_bits(at[1]));
+        along(at, v, gain, [reach.saturating_neg(); 2], [reach; 2], margins.tick)
+    }
+
+    /// Adds pairs that impacts brought together, though their own ways would not have.
+    pub(crate) fn join(&mut self, late: &mut Vec<[[u32; 2]; 2]>, colliders: &Colliders, contacts: &Contacts) {
+        if late.is_empty() {
+            return;
+        }
+        for [pair, bodies] in late.drain(..) {
+            let ids = pair.map(|slot| colliders.id(slot as usize));
+            let old = (0..contacts.len()).find(|&at| contacts.ids(at) == (ids[0], ids[1])).map_or(NEW, |at| at as u32);
+            self.pairs.push(Pair { old, met: true, ..Pair::new(pair, bodies, Manifold::default(), colliders) });
+        }
+        self.pairs.sort_unstable_by_key(|pair| pair.colliders);
+    }
+
+    /// The contacts after the step: `outcome` says of a pair what the solver made of it. What began and
     /// ended goes to `events`; `next` is where the list is built.
     pub(crate) fn finish(
         &self,
@@ -234,7 +322,7 @@ impl Touch {
         next: &mut Contacts,
         colliders: &Colliders,
         events: &mut Vec<Event>,
-        outcome: impl Fn(usize) -> Contact,
+        outcome: impl Fn(&Pair) -> Contact,
     ) {
         events.clear();
         next.clear();
@@ -245,7 +333,7 @@ impl Touch {
                 events.push(Event { kind, a: contact.a, b: contact.b });
             }
         };
-        for (at, pair) in self.pairs.iter().enumerate() {
+        for pair in &self.pairs {
             let [a, b] = pair.colliders;
             while old < contacts.len() && (old as u32 != pair.old && contacts.key(old) <= (a, b)) {
                 end(contacts.get(old), events);
@@ -254,10 +342,10 @@ impl Touch {
             let before = if pair.old == NEW { Contact::default() } else { contacts.get(old) };
             old = old.saturating_add(usize::from(pair.old != NEW));
             let (a, b) = (colliders.id(a as usize), colliders.id(b as usize));
-            let contact = if pair.manifold.count > 0 {
-                Contact { a, b, ..outcome(at) }
-            } else {
+            let contact = if pair.sensor {
                 Contact { a, b, touching: true, sensor: true, ..Contact::default() }
+            } else {
+                Contact { a, b, ..outcome(pair) }
             };
             match (before.touching, contact.touching) {
                 (false, true) if contact.sensor => events.push(Event { kind: EventKind::SensorBegin, a, b }),
@@ -301,12 +389,21 @@ fn around(point: Vec2<Length>, min: [i64; 2], max: [i64; 2]) -> Aabb {
 }
 
 /// The box around a box from `min` to `max` about a body and its way in this tick.
-fn sweep(bodies: &Bodies, body: usize, min: [i64; 2], max: [i64; 2], tick: i64) -> Aabb {
-    let ways = [way(bodies.vx.bits()[body], tick), way(bodies.vy.bits()[body], tick)];
+fn sweep(bodies: &Bodies, drive: &Drive, body: usize, min: [i64; 2], max: [i64; 2], tick: i64) -> Aabb {
+    let v = [bodies.vx.bits()[body], bodies.vy.bits()[body]];
+    along(bodies.position(body), v, drive.gain(body, tick), min, max, tick)
+}
+
+/// The box around a box from `min` to `max` about a point that moves for a tick: with a velocity and what it gains, Q48.
+fn along(at: Vec2<Length>, v: [i64; 2], gain: [i64; 2], min: [i64; 2], max: [i64; 2], tick: i64) -> Aabb {
+    // A parabola lies within the triangle of its ends and where its first velocity leads in half of the tick.
+    let half = v.map(|v| way(v, tick) / 2);
+    let whole = [0, 1].map(|axis: usize| way(add_sat(v[axis], gain[axis] / 2), tick));
     let stretch = |bound: [i64; 2], pick: fn(i64, i64) -> i64| {
-        [bound[0].saturating_add(pick(ways[0], 0)), bound[1].saturating_add(pick(ways[1], 0))]
+        let out = |axis: usize| bound[axis].saturating_add(pick(pick(half[axis], whole[axis]), 0));
+        [out(0), out(1)]
     };
-    around(bodies.position(body), stretch(min, i64::min), stretch(max, i64::max))
+    around(at, stretch(min, i64::min), stretch(max, i64::max))
 }
 
 /// About how far the bodies go together in this tick: a hint for the broad phase.

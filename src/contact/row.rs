@@ -71,7 +71,8 @@ impl Contact {
             return Err("has a contact that no step makes");
         }
         let pushes = self.normal != [0; 2] || self.tangent != [0; 2];
-        let reason = if self.sensor { self.touching && used == 0 } else { used > 0 && (self.touching || pushes) };
+        // An impact touches without points.
+        let reason = if self.sensor { self.touching && used == 0 } else { self.touching || used > 0 && pushes };
         if !reason {
             return Err("has a contact without a reason");
         }

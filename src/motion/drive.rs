@@ -132,6 +132,13 @@ impl Drive {
         pushes.get(*self.push_at.get(slot)? as usize)
     }
 
+    /// What constant forces add to a body's velocity in a tick of 1/`tick` s (Q63), Q48 m/s; without damping, if any.
+    pub(crate) fn gain(&self, slot: usize, tick: i64) -> [i64; 2] {
+        let [x, y, _] = &self.kick;
+        let kick = [x[slot], y[slot]];
+        if self.stages == [Stage::Glide] { kick } else { kick.map(|a| mul(a, tick, 63)) }
+    }
+
     /// The span of a glide for bodies without damping.
     pub(crate) fn glide_span(&self) -> Span {
         Span::new(self.decay_span)

@@ -115,9 +115,11 @@ pub enum Bound {
     /// A speed in a substep with contacts: ±400·2^k m/s along an axis or at the rim of the body, or an eighth of a turn a
     /// substep.
     ContactSpeed,
+    /// The impacts of a body in one tick at 256: from then on nothing bounces off it in that tick.
+    Impacts,
 }
 
-record_enum!(Bound { 0 => Position {}, 1 => Turns {}, 2 => Velocity {}, 3 => AngularVelocity {}, 4 => Acceleration {}, 5 => ContactSpeed {} });
+record_enum!(Bound { 0 => Position {}, 1 => Turns {}, 2 => Velocity {}, 3 => AngularVelocity {}, 4 => Acceleration {}, 5 => ContactSpeed {}, 6 => Impacts {} });
 
 impl fmt::Display for Bound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -128,6 +130,7 @@ impl fmt::Display for Bound {
             Bound::AngularVelocity => "angular velocity",
             Bound::Acceleration => "acceleration",
             Bound::ContactSpeed => "speed in contact",
+            Bound::Impacts => "number of impacts in a tick",
         })
     }
 }

@@ -7,10 +7,14 @@
 //! | `circle` | a circle against a polygon or a circle |
 //! | `overlap` | whether outlines have a point in common |
 //! | `query` | points in outlines, nearest points, rays |
+//! | `meeting`, `moment`, `course` | when two moving outlines first touch |
 //! | `unit` | directions and lengths without a division |
 
 mod circle;
+mod course;
 mod manifold;
+mod meeting;
+mod moment;
 mod overlap;
 mod polygon;
 mod query;
@@ -19,6 +23,7 @@ mod tests;
 mod unit;
 
 pub(crate) use manifold::{Manifold, Point, collide};
+pub(crate) use meeting::{Motion, first_touch};
 pub(crate) use overlap::overlap;
 pub(crate) use query::{Hit, closest, contains, ray};
 

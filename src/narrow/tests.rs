@@ -4,11 +4,13 @@
 mod exact;
 mod hard;
 mod identity;
+mod meeting;
 mod oracle;
 mod queries;
+mod search;
 mod symmetry;
 
-use super::{Manifold, collide};
+use super::{Manifold, closest, collide};
 use crate::geom::{Rot, Vec2};
 use crate::num::{Angle, Length, mul, sin_cos};
 use crate::shape::{Placed, Shape};

@@ -14,7 +14,7 @@ use crate::num::{div, lane, mul_div, round_shift};
 /// |---|---|---|
 /// | `mantissa`, `exponent` | mass = mantissa·2^exponent Q64 kg, 34 bits | 0 for what impulses do not move |
 /// | `sigma` | Q32 m | between reach/7.9 and reach, so that α ≤ 7.9 |
-/// | `tau` | Q28 | below (120/7.9)² = 231 |
+/// | `tau`, `tau_fine` | Q28, Q48 | below (120/7.9)² = 231 |
 /// | `inverse`, `inverse_shift` | 2^shift/σ, 62 bits | – |
 /// | `scale`, `scale_shift` | 2⁵⁸ over σ brought to 2²⁸ … 2²⁹ by a shift right, 30 bits | – |
 /// | `reach` | Q32 m | – |
@@ -24,6 +24,8 @@ pub(crate) struct Mobility {
     exponent: u32,
     pub(crate) sigma: i64,
     pub(crate) tau: i64,
+    /// τ with 48 fraction bits.
+    pub(crate) tau_fine: i64,
     inverse: i64,
     inverse_shift: u32,
     scale: i64,
@@ -46,21 +48,23 @@ impl Mobility {
         // 7.9 = 79/10, rounded up so that α stays below it.
         let least = reach.saturating_mul(10).saturating_add(78) / 79;
         let sigma = if data.fixed_rotation { reach } else { rho.max(least).min(reach).max(1) };
-        let (mut mantissa, mut exponent, mut tau) = (0, 0, 0);
+        let (mut mantissa, mut exponent, mut tau_fine) = (0, 0, 0);
         if data.is_dynamic() {
             let mass = data.mass.to_bits();
             exponent = (128u32).saturating_sub(mass.leading_zeros()).saturating_sub(MANTISSA_BITS);
             mantissa = round_shift(mass, exponent) as i64;
             if !data.fixed_rotation {
                 let square = i128::from(sigma).saturating_mul(sigma.into());
-                tau = (mul_div(square, mass, data.inertia.to_bits()) >> 36) as i64;
+                // Q64 m² times Q64 over Q64.
+                tau_fine = (mul_div(square, mass, data.inertia.to_bits()) >> 16) as i64;
             }
         }
+        let tau = tau_fine >> 20;
         let inverse_shift = 62u32.saturating_add(sigma.ilog2());
         let inverse = div(1 << inverse_shift, sigma.into()) as i64;
         let scale_shift = (sigma.ilog2() as i32).saturating_sub(28);
         let scale = div(1 << 58, lane::shifted(sigma, scale_shift).into()) as i64;
-        Mobility { mantissa, exponent, sigma, tau, inverse, inverse_shift, scale, scale_shift, reach, fixed }
+        Mobility { mantissa, exponent, sigma, tau, tau_fine, inverse, inverse_shift, scale, scale_shift, reach, fixed }
     }
 
     /// Whether impulses move it.
@@ -84,6 +88,19 @@ impl Mobility {
                 b.saturating_mul(ONE).saturating_add(sum >> 1).checked_div(sum).unwrap_or(0) as i32
             }
         }
+    }
+
+    /// The part p of the first of two bodies, Q48, from their masses to 34 bits; 0 if it does not move.
+    pub(crate) fn part(&self, other: &Mobility) -> i64 {
+        const ONE: i64 = 1 << 48;
+        if !self.moves() || !other.moves() {
+            return if self.moves() { ONE } else { 0 };
+        }
+        let top = self.exponent.max(other.exponent);
+        // At most 2³⁴, brought to 2⁷⁶ by 48 bits of the quotient: below 2¹²⁴ with 48 more for the lesser exponent.
+        let mass = |m: &Mobility| (i128::from(m.mantissa) << 40) >> top.saturating_sub(m.exponent).min(100);
+        let (a, b) = (mass(self), mass(other));
+        div(b << 48, a.saturating_add(b)) as i64
     }
 
     /// An arm over σ, Q28, from an arm in Q32 m: below 8 in magnitude. Error: 2⁻²⁸.

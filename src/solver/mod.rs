@@ -1,33 +1,40 @@
 //! The contact solver: substepped, soft, in mass-normalised rows.
 //!
-//! A tick: rows from manifolds, last tick's impulses, then in each substep forces, a sweep with soft rows, positions, a
-//! sweep without; at the end the bounces.
+//! A tick: rows from manifolds, last tick's impulses, then in each substep forces, a sweep with soft rows, positions,
+//! impacts at their times, a sweep without. What comes together fast has no rows: it strikes (`timeline`).
 
-mod bounce;
 mod color;
+mod flight;
 mod impact;
 mod mobility;
 mod mover;
 mod prepare;
 mod rows;
 mod scales;
+mod strike;
+mod timeline;
 
 use crate::body::{Bodies, Colliders};
-use crate::contact::{Contact, Contacts, NEW, Touch};
-use crate::motion::Fault;
-use bounce::Bounce;
+use crate::contact::{Contact, Contacts, NEW, Pair, Touch};
+use crate::motion::{Drive, Fault};
+use crate::num::{cross, dot, mul};
 use color::Colors;
+use flight::TICK;
 pub use impact::{Impact, ImpactError, Striker, impact};
 pub(crate) use mobility::Mobility;
 use mover::Movers;
 use prepare::Joint;
 use rows::{Block, LANES};
 pub(crate) use scales::Scales;
+use timeline::{Stage, Timeline};
 
 /// How many substeps pass between sweeps that take back what pushing overlaps apart added to velocities: there is one
 /// after every fifth substep and after the last; and in between for contacts with a row that pushes without bearing a load.
 /// With one after each substep, stacks and piles stand no better and a tick takes 1.6 times as long.
 const RELAX: u32 = 5;
+
+/// What two ways of computing how far two bodies overlap may differ by: 10 nm, Q32 m.
+const ROUNDING: i64 = 43;
 
 /// The solver's own memory. All of it is derived, and none of it but mobilities and scales lasts from tick to tick.
 #[derive(Debug, Default)]
@@ -39,12 +46,11 @@ pub(crate) struct Solver {
     before: Vec<[i64; 6]>,
     free: Vec<bool>,
     places: Vec<[u32; 2]>,
-    /// By pair: its place among those with rows. Pairs with sensors have none.
-    rows: Vec<u32>,
+    /// Pairs that may strike.
+    fast: Vec<u32>,
+    timeline: Timeline,
     colors: Colors,
     blocks: Vec<Block>,
-    bounces: Vec<Bounce>,
-    bounced: Vec<bool>,
 }
 
 impl Clone for Solver {
@@ -59,102 +65,155 @@ impl Clone for Solver {
 }
 
 impl Solver {
-    /// Rows for the pairs of this tick, while the bodies are where it begins.
-    pub(crate) fn prepare(&mut self, touch: &Touch, contacts: &Contacts, bodies: &Bodies, colliders: &Colliders) {
-        let Solver { mobilities, scales, movers, before, free, places, rows, colors, blocks, bounces, bounced } = self;
+    /// Rows for the pairs of this tick that touch or come near slowly, while the bodies are where it begins; what comes
+    /// fast is left to strike.
+    pub(crate) fn prepare(&mut self, touch: &mut Touch, contacts: &Contacts, bodies: &Bodies, drive: &Drive) {
+        let Solver { mobilities, scales, movers, before, free, places, fast, timeline, colors, blocks } = self;
         movers.clear(bodies.cold.len());
+        timeline.clear(bodies.cold.len());
         places.clear();
-        rows.clear();
-        bounces.clear();
-        bounced.clear();
-        for pair in &touch.pairs {
-            rows.push(places.len() as u32);
-            if pair.manifold.count > 0 {
-                places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
+        fast.clear();
+        for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !pair.sensor) {
+            if pair.manifold.count == 0 || strikes(pair, bodies, drive, scales, false) {
+                fast.push(at as u32);
+            } else {
+                for slot in pair.bodies {
+                    movers.place(slot, bodies, &mobilities[slot as usize], scales);
+                }
             }
+        }
+        // Among others, what does not bounce is stopped by rows as well, and in piles for less; and more is slow.
+        fast.retain(|&at| {
+            let pair = &touch.pairs[at as usize];
+            let among = pair.bodies.iter().all(|&slot| movers.place_of(slot) != 0);
+            !among || pair.manifold.count == 0 || pair.restitution > 0 && strikes(pair, bodies, drive, scales, true)
+        });
+        for &at in &*fast {
+            let pair = &mut touch.pairs[at as usize];
+            let points = &pair.manifold.points[..pair.manifold.count as usize];
+            let deepest = points.iter().fold(0, |depth: i64, point| depth.max(point.separation.saturating_neg()));
+            pair.depth = deepest.saturating_add(ROUNDING);
+            pair.manifold.count = 0;
+        }
+        for pair in touch.pairs.iter_mut().filter(|pair| pair.manifold.count > 0) {
+            pair.row = places.len() as u32;
+            places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
+        }
+        if !fast.is_empty() {
+            timeline.remember(bodies);
         }
         movers.remember(bodies, before);
         movers.yielding(mobilities, free);
         colors.assign(places, free);
         blocks.resize_with(colors.blocks, Block::default);
         blocks.iter_mut().for_each(Block::clear);
-        bounced.resize(places.len(), false);
 
-        let solid = touch.pairs.iter().filter(|pair| pair.manifold.count > 0);
-        for (row, pair) in solid.enumerate() {
+        for pair in touch.pairs.iter().filter(|pair| pair.row != NEW) {
+            let row = pair.row as usize;
             let [a, b] = pair.bodies.map(|slot| slot as usize);
             let between = |c: &[i64]| c[b].saturating_sub(c[a]);
             let between = [between(bodies.x.bits()), between(bodies.y.bits())];
             let joint = Joint::new(pair, places[row], between, [&mobilities[a], &mobilities[b]]);
-            let [first, second] = pair.colliders.map(|slot| colliders.rows.value(slot as usize));
-            let friction = first.friction.combine(second.friction).to_bits();
             let old = if pair.old == NEW { Contact::default() } else { contacts.get(pair.old as usize) };
             let seat = colors.seats[row] as usize;
-            joint.write(&mut blocks[seat / LANES], seat % LANES, &old, friction, scales);
-            let restitution = first.restitution.combine(second.restitution).to_bits();
-            bounces.extend(joint.bounce(row as u32, &movers.lanes, restitution, scales));
+            joint.write(&mut blocks[seat / LANES], seat % LANES, &old, pair.friction, scales);
         }
     }
 
-    /// The substeps, after the bodies have moved as if nothing touched them; bodies that contacts pushed are put where
-    /// contacts bring them.
-    pub(crate) fn run(&mut self, bodies: &mut Bodies, faults: &mut Vec<Fault>) {
-        let Solver { mobilities, scales, movers, before, places, colors, blocks, bounces, bounced, .. } = self;
+    /// Impacts and substeps, after the bodies have moved as if nothing touched them; bodies that were struck or pushed are
+    /// put where that brings them.
+    pub(crate) fn run(
+        &mut self,
+        touch: &mut Touch,
+        bodies: &mut Bodies,
+        colliders: &Colliders,
+        contacts: &Contacts,
+        drive: &Drive,
+        faults: &mut Vec<Fault>,
+    ) {
+        let Solver { mobilities, scales, movers, before, places, fast, timeline, colors, blocks, .. } = self;
+        let stage = Stage { bodies, colliders, touch, drive, mobilities, scales };
+        for &pair in &*fast {
+            timeline.engage(pair as usize, &stage, movers);
+        }
         if blocks.is_empty() {
-            return;
-        }
-        movers.take_kicks(bodies, mobilities, scales);
-        for block in blocks.iter_mut() {
-            block.warm_start(&mut movers.lanes);
-        }
-        for substep in 1..=scales.substeps {
-            movers.begin(substep == 1);
+            timeline.run([0, TICK], &stage, movers, faults);
+        } else {
+            movers.take_kicks(bodies, mobilities, scales);
             for block in blocks.iter_mut() {
-                block.solve::<true>(u8::MAX, &mut movers.lanes, scales);
+                block.warm_start(&mut movers.lanes);
             }
-            movers.drift(scales);
-            let all = substep % RELAX == 0 || substep == scales.substeps;
-            for block in blocks.iter_mut().filter(|block| all || block.pushes != 0) {
-                let lanes = if all { u8::MAX } else { block.pushes };
-                block.solve::<false>(lanes, &mut movers.lanes, scales);
+            for substep in 1..=scales.substeps {
+                movers.begin(substep == 1);
+                for block in blocks.iter_mut() {
+                    block.solve::<true>(u8::MAX, &mut movers.lanes, scales);
+                }
+                movers.drift(scales);
+                timeline.run(scales.span(substep), &stage, movers, faults);
+                let all = substep % RELAX == 0 || substep == scales.substeps;
+                for block in blocks.iter_mut().filter(|block| all || block.pushes != 0) {
+                    let lanes = if all { u8::MAX } else { block.pushes };
+                    block.solve::<false>(lanes, &mut movers.lanes, scales);
+                }
             }
+            for (row, &places) in places.iter().enumerate() {
+                let seat = colors.seats[row] as usize;
+                if blocks[seat / LANES].spent(seat % LANES) {
+                    movers.hit(places);
+                }
+            }
+            movers.store(bodies, before, mobilities, scales, faults);
         }
-        let spent = |row: usize| {
-            let seat = colors.seats[row] as usize;
-            blocks[seat / LANES].spent(seat % LANES)
-        };
-        for (row, &places) in places.iter().enumerate() {
-            if spent(row) != [0; 2] {
-                movers.hit(places);
-            }
+        timeline.flights.store(bodies, movers, scales, faults);
+        for &pair in &timeline.met {
+            touch.pairs[pair as usize].met = true;
         }
-        for bounce in bounces.iter() {
-            let row = bounce.row as usize;
-            let fast = bounce.speed < movers.still(bounce, scales).saturating_neg();
-            if fast && spent(row) != [0; 2] {
-                bounce.solve(&mut movers.lanes, spent(row));
-                bounced[row] = true;
-            }
-        }
-        movers.store(bodies, before, mobilities, scales, faults);
+        touch.join(&mut timeline.late, colliders, contacts);
     }
 
-    /// What became of a contact, for the next tick. `pair` is its place among the pairs.
-    pub(crate) fn outcome(&self, touch: &Touch, pair: usize) -> Contact {
-        let row = self.rows[pair] as usize;
-        let seat = self.colors.seats[row] as usize;
+    /// What became of a contact, for the next tick.
+    pub(crate) fn outcome(&self, pair: &Pair) -> Contact {
+        let manifold = &pair.manifold;
+        let mut contact = Contact { count: manifold.count, touching: pair.met, ..Contact::default() };
+        if pair.row == NEW {
+            return contact;
+        }
+        let seat = self.colors.seats[pair.row as usize] as usize;
         let (block, i) = (&self.blocks[seat / LANES], seat % LANES);
-        let manifold = &touch.pairs[pair].manifold;
-        let mut contact = Contact { count: manifold.count, ..Contact::default() };
         for at in 0..manifold.count as usize {
             contact.ids[at] = manifold.points[at].id;
             contact.touching |= block.peak[at][i] > 0 || manifold.points[at].separation <= 0;
         }
-        // What stopped a body is spent: as the load of a contact at rest it would throw it back.
-        if !self.bounced[row] {
-            contact.normal = [0, 1].map(|at| block.points[at].carried(i));
-            contact.tangent[0] = block.friction.carried(i);
-        }
+        contact.normal = [0, 1].map(|at| block.points[at].carried(i));
+        contact.tangent[0] = block.friction.carried(i);
         contact
     }
+}
+
+/// Whether a near pair comes together so fast that it strikes.
+fn strikes(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scales, among: bool) -> bool {
+    let [a, b] = pair.bodies.map(|slot| slot as usize);
+    let (va, vb) = (bodies.velocity(a), bodies.velocity(b));
+    let v = [va.x.to_bits().saturating_sub(vb.x.to_bits()), va.y.to_bits().saturating_sub(vb.y.to_bits())];
+    let omega = [a, b].map(|at| bodies.omega.get(at).to_bits());
+    let gain = [a, b].map(|at| drive.gain(at, scales.margins.tick));
+    let n = pair.manifold.normal.map(i64::from);
+    let between = |c: &[i64]| c[b].saturating_sub(c[a]);
+    let between = [between(bodies.x.bits()), between(bodies.y.bits())];
+    let press = gain.map(|gain| dot(gain, n, 30));
+    let mut closest = i64::MAX;
+    let mut approach = 0;
+    for point in &pair.manifold.points[..pair.manifold.count as usize] {
+        let other = [point.arm[0].saturating_sub(between[0]), point.arm[1].saturating_sub(between[1])];
+        let turning = |omega: i64, arm: [i64; 2]| mul(omega, cross(arm, n, 30), 32);
+        let speed = dot(v, n, 30).saturating_add(turning(omega[0], point.arm)).saturating_sub(turning(omega[1], other));
+        closest = closest.min(point.separation);
+        approach = approach.min(speed);
+    }
+    let approach = approach.saturating_neg();
+    let weight = press[0].saturating_abs().max(press[1].saturating_abs());
+    let threshold = scales.threshold(pair.restitution, weight, among);
+    // Across a gap forces make it faster; what rests is pressed by them and does not strike.
+    let press = if closest > scales.touching { press[1].saturating_sub(press[0]).max(0) } else { 0 };
+    approach.saturating_add(press) > threshold && closest > scales.slack.saturating_neg()
 }

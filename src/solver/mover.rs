@@ -1,6 +1,6 @@
 //! Bodies as the rows see them, for one tick: velocities in full, positions as what changed since the tick began.
 
-use super::bounce::Bounce;
+use super::flight::{State, rim};
 use super::mobility::Mobility;
 use super::scales::{SPEED_MAX, Scales};
 use crate::body::Bodies;
@@ -23,6 +23,16 @@ pub(crate) struct Mover {
     pub(crate) phi: i32,
 }
 
+impl Mover {
+    /// Puts it where the sum of its velocities brings it.
+    fn go(&mut self, sum: &[i64; 3], scales: &Scales) {
+        // At most 400 m/s for as many substeps as the tick has, Q20, times h in Q30: below 2⁵⁹; to Q26.
+        let way = |sum: i64| lane::round_to::<24>(lane::times(scales.coarse, sum));
+        self.d = [way(sum[0]), way(sum[1])];
+        self.phi = way(sum[2]);
+    }
+}
+
 /// What else a mover needs from substep to substep. Velocities x, y and w as above.
 #[derive(Clone, Copy, Debug, Default)]
 struct Course {
@@ -40,6 +50,8 @@ struct Course {
     slot: u32,
     /// Whether a contact pushed it in this tick.
     hit: bool,
+    /// Whether rows have changed its velocity: until then its way is free motion.
+    pushed: bool,
     slowed: bool,
 }
 
@@ -75,7 +87,7 @@ impl Movers {
         }
         let (v, omega) = (bodies.velocity(at), bodies.omega.get(at));
         let line = |v: Velocity| round_shift(v.to_bits().into(), scales.shift) as i64;
-        let start = [line(v.x), line(v.y), rim(omega, mobility.sigma, scales)];
+        let start = [line(v.x), line(v.y), rim(omega.to_bits(), mobility, scales)];
         // The rim below the bound of speed, and less than an eighth of a turn in a substep: σ·(π/4)/h.
         let sigma = i128::from(mobility.sigma);
         let fast = div(sigma.saturating_mul(SPEED_MAX.into()) << 48, mobility.reach.max(1).into());
@@ -96,7 +108,7 @@ impl Movers {
             let slot = course.slot as usize;
             let (v, omega) = (bodies.velocity(slot), bodies.omega.get(slot));
             let line = |v: Velocity| round_shift(v.to_bits().into(), scales.shift) as i64;
-            let end = [line(v.x), line(v.y), rim(omega, mobilities[slot].sigma, scales)];
+            let end = [line(v.x), line(v.y), rim(omega.to_bits(), &mobilities[slot], scales)];
             course.kick = [0, 1, 2].map(|axis| {
                 let change = i128::from(end[axis]).saturating_sub(course.start[axis].into());
                 lane::bounded(div(change, scales.substeps.into()) as i64)
@@ -128,6 +140,8 @@ impl Movers {
         for (mover, course) in self.lanes.iter_mut().zip(&mut self.courses).skip(1) {
             let limits = [LIMIT, LIMIT, course.spin_max];
             let now = [mover.v[0], mover.v[1], mover.w];
+            let free = |axis: usize| lane::sub(now[axis], course.begin[axis]) == course.kick[axis];
+            course.pushed |= !(free(0) && free(1) && free(2));
             let over = |axis: usize| now[axis].unsigned_abs() > limits[axis].unsigned_abs();
             course.cut = [0; 3];
             if over(0) || over(1) || over(2) {
@@ -139,11 +153,61 @@ impl Movers {
             for (sum, v) in course.sum.iter_mut().zip([mover.v[0], mover.v[1], mover.w]) {
                 *sum = lane::add(*sum, lane::round::<28>(v));
             }
-            // At most 400 m/s for as many substeps as the tick has, Q20, times h in Q30: below 2⁵⁹; to Q26.
-            let way = |sum: i64| lane::round_to::<24>(lane::times(scales.coarse, sum));
-            mover.d = [way(course.sum[0]), way(course.sum[1])];
-            mover.phi = way(course.sum[2]);
+            mover.go(&course.sum, scales);
         }
+    }
+
+    /// The place of the body in a slot, 0 if it has none.
+    pub(crate) fn place_of(&self, slot: u32) -> u32 {
+        self.places.get(slot as usize).copied().unwrap_or(0)
+    }
+
+    /// Whether rows have changed its velocity.
+    pub(crate) fn is_pushed(&self, place: u32) -> bool {
+        self.courses[place as usize].pushed
+    }
+
+    /// Whether [`Movers::store`] says where it ends; not for 0.
+    pub(crate) fn keeps(&self, place: u32) -> bool {
+        let course = &self.courses[place as usize];
+        place != 0 && (course.hit || course.slowed)
+    }
+
+    /// Where it is when the way of this substep, which it has been given, begins, and with which velocities it goes it.
+    /// `begin`: where the tick began.
+    pub(crate) fn state(&self, place: u32, begin: &State, mobility: &Mobility, scales: &Scales) -> State {
+        let (mover, course) = (&self.lanes[place as usize], &self.courses[place as usize]);
+        let k = scales.shift;
+        let read = [mover.v[0], mover.v[1], mover.w].map(lane::round::<28>);
+        let gone = [0, 1, 2].map(|axis: usize| lane::sub(course.sum[axis], read[axis]));
+        let at = |axis: usize| begin.x[axis].saturating_add(mul(gone[axis], scales.line, 51u32.saturating_sub(k)));
+        let turned = mobility.over_sigma(mul(gone[2], scales.turn, 33), 50u32.saturating_sub(k), 48);
+        let speed = |axis: usize| clamp_i64(i128::from(read[axis]) << 28u32.saturating_add(k));
+        State {
+            x: [at(0), at(1)],
+            angle: turn_by(begin.angle, turned).0,
+            v: [speed(0), speed(1)],
+            omega: mobility.over_sigma(read[2], 20u32.saturating_sub(k), 48),
+        }
+    }
+
+    /// An impact changed its velocities, with a part of the tick `left` (Q32) of the substep whose way it has been given.
+    pub(crate) fn strike(&mut self, place: u32, change: [i64; 3], left: i64, scales: &Scales) {
+        if place == 0 {
+            return;
+        }
+        let (mover, course) = (&mut self.lanes[place as usize], &mut self.courses[place as usize]);
+        let now = [mover.v[0], mover.v[1], mover.w];
+        let then = lane::held([0, 1, 2].map(|axis: usize| now[axis].saturating_add(change[axis])));
+        [mover.v[0], mover.v[1], mover.w] = then;
+        for axis in 0..3 {
+            // Warm starting does not repeat it.
+            let change = lane::sub(then[axis], now[axis]);
+            course.begin[axis] = lane::bounded(course.begin[axis].saturating_add(change));
+            let way = i128::from(change).saturating_mul(left.into()).saturating_mul(scales.substeps.into());
+            course.sum[axis] = lane::add(course.sum[axis], round_shift(way, 60) as i64);
+        }
+        mover.go(&course.sum, scales);
     }
 
     /// By place, whether impulses leave it as it is.
@@ -151,21 +215,6 @@ impl Movers {
         let place = |course: &Course| mobilities.get(course.slot as usize).is_none_or(|m| !m.moves());
         free.clear();
         free.extend(self.courses.iter().map(place));
-    }
-
-    /// The speed of approach below which a contact is left to the rows, Q48: half of what forces add to the bodies in the
-    /// tick, for a bounce that ends within it; and 1 mm/s, or 0.1 m/s where nothing bounces.
-    pub(crate) fn still(&self, bounce: &Bounce, scales: &Scales) -> i64 {
-        let least = if bounce.target == [0; 2] { ONE / 10 } else { ONE / 1000 };
-        if bounce.elastic {
-            return least;
-        }
-        let kick = bounce.bodies.iter().flat_map(|&place| {
-            let [x, y, _] = self.courses[place as usize].kick;
-            [x.saturating_abs(), y.saturating_abs()]
-        });
-        let kick = kick.fold(0i64, i64::saturating_add).saturating_mul(scales.substeps.into());
-        least.max(kick / 2)
     }
 
     /// Notes that a contact pushed these bodies.
@@ -234,13 +283,5 @@ impl Movers {
     }
 }
 
-/// 1 m/s.
-const ONE: i64 = 1 << 48;
-
 /// π/4 with 30 fraction bits.
 const EIGHTH_TURN: i128 = 843_314_857;
-
-/// w = σ·ω over 2^k, Q48.
-fn rim(omega: AngularVelocity, sigma: i64, scales: &Scales) -> i64 {
-    mul(omega.to_bits(), sigma, scales.shift.saturating_add(32))
-}

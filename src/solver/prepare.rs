@@ -1,13 +1,11 @@
 //! From a pair's manifold to its rows.
 
-use super::bounce::{Bounce, approach};
 use super::mobility::Mobility;
-use super::mover::Mover;
 use super::rows::{Block, Row};
 use super::scales::Scales;
 use crate::contact::{Contact, Pair};
 use crate::narrow::Point;
-use crate::num::{lane, mul, round_shift};
+use crate::num::{lane, mul};
 
 /// Two bodies with contact points, and what is the same for all their rows.
 pub(crate) struct Joint<'p> {
@@ -106,34 +104,6 @@ impl<'p> Joint<'p> {
         block.couple[0][i] = block.friction.turns(i, first);
         block.couple[1][i] = block.friction.turns(i, second);
         block.couple[2][i] = block.points[0].turns(i, second);
-    }
-
-    /// How the contact is to bounce with this restitution (Q48), if it approaches.
-    pub(crate) fn bounce(&self, row: u32, movers: &[Mover], restitution: i64, scales: &Scales) -> Option<Bounce> {
-        let [a, b] = self.places.map(|place| &movers[place as usize]);
-        // No point is faster than this; nothing slower than 1 mm/s bounces.
-        let reach = |m: &Mover| m.w.saturating_abs().saturating_mul(8);
-        let between = |axis: usize| a.v[axis].saturating_sub(b.v[axis]).saturating_abs();
-        let fastest = [between(0), between(1), reach(a), reach(b)].into_iter().fold(0, i64::saturating_add);
-        if fastest < 1 << 38 {
-            return None;
-        }
-        let manifold = &self.pair.manifold;
-        let (bodies, share, inertia) = (self.places, self.share, self.inertia);
-        let mut bounce = Bounce { row, bodies, normal: manifold.normal, share, inertia, ..Bounce::default() };
-        for (at, point) in manifold.points[..manifold.count as usize].iter().enumerate() {
-            let [arm, _] = self.arms(point);
-            let speed = approach(a, b, manifold.normal, arm);
-            bounce.arm[at] = arm;
-            bounce.speed = bounce.speed.min(speed);
-            // A substep's way more, so that two corners of a box that lands flat are in it together.
-            let way = mul(speed, scales.margins.tick.saturating_add(scales.line), 48 + 63 - 32);
-            let gap = round_shift(point.separation.into(), scales.shift) as i64;
-            bounce.reaches[at] = speed < 0 && gap.saturating_add(way) <= 0;
-            bounce.target[at] = mul(speed.min(0).saturating_neg(), restitution, 48);
-        }
-        bounce.elastic = restitution == 1 << 48;
-        (bounce.speed < 0).then_some(bounce)
     }
 }
 

@@ -184,9 +184,9 @@ impl Block {
         }
     }
 
-    /// The greatest impulse of each point of a contact along the normal in this tick, as λ·S, Q48.
-    pub(crate) fn spent(&self, i: usize) -> [i64; 2] {
-        [0, 1].map(|at| mul(self.peak[at][i], self.points[at].line[i]))
+    /// Whether a contact pushed in this tick.
+    pub(crate) fn spent(&self, i: usize) -> bool {
+        self.peak[0][i] > 0 || self.peak[1][i] > 0
     }
 
     /// Changes of the impulses of friction and of both points, to the bodies.

@@ -29,6 +29,11 @@ const PUSH: i64 = 1 << 20;
 /// The distance at which contacts are looked for: 2 cm, 32 fraction bits.
 const MARGIN: i64 = 85_899_346;
 
+/// 1 mm, 32 fraction bits.
+const SLACK: i64 = 4_294_967;
+/// 1 m/s, 48 fraction bits.
+const SPEED: i64 = 1 << 48;
+
 /// What a world's configuration makes of them. Lanes hold metres and metres per second over 2^k.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Scales {
@@ -49,6 +54,12 @@ pub(crate) struct Scales {
     pub(crate) push: i64,
     pub(crate) soft: [i32; 2],
     pub(crate) margins: Margins,
+    /// A tick in seconds over 2π, 63 fraction bits.
+    pub(crate) tick_turn: i64,
+    /// What of an overlap is no more than bodies at rest have, Q32 m.
+    pub(crate) slack: i64,
+    /// How near is touching, Q32 m.
+    pub(crate) touching: i64,
 }
 
 impl Scales {
@@ -66,6 +77,46 @@ impl Scales {
             push: -PUSH,
             soft: [SOFT.mass, SOFT.impulse],
             margins: Margins { base: MARGIN << shift, tick: div(1 << 63, tick_rate.into()) as i64 },
+            tick_turn: div(TURN_PER_RADIAN_Q64, i128::from(tick_rate).saturating_mul(2)) as i64,
+            slack: SLACK << shift,
+            touching: i64::from(SLOP) << shift.saturating_add(6),
         }
+    }
+
+    /// When the n-th substep begins and ends, from 1 on; Q32 of the tick.
+    pub(crate) fn span(&self, substep: u32) -> [i64; 2] {
+        let begins = |n: u32| (i64::from(n) << 32).checked_div(self.substeps.into()).unwrap_or(0);
+        [begins(substep.saturating_sub(1)), begins(substep)]
+    }
+
+    /// The speed of approach from which on a pair with this C_R (Q48) strikes instead of being pressed together, Q48 m/s.
+    /// `press`: what forces add in a tick to the speed of one of them; `among`: whether both lie among others.
+    ///
+    /// Below g·T/2·C_R a bounce would end within the tick, at a height of a third of a millimetre. What does not bounce is
+    /// the rows' up to 1 m/s, which they stop as well; and so is a pile that settles, up to 4·g·T.
+    pub(crate) fn threshold(&self, restitution: i64, press: i64, among: bool) -> i64 {
+        if restitution >= SPEED {
+            return 0;
+        }
+        let most = SPEED << self.shift;
+        if restitution == 0 {
+            return most;
+        }
+        let fast = div(i128::from(press) << 47, restitution.into()).clamp((most / 100).into(), most.into()) as i64;
+        if among { fast.max(press.saturating_mul(4)) } else { fast }
+    }
+
+    /// The least speed of approach at which what was taken from the rows is answered as an impact, Q48 m/s; `held`: rows
+    /// have the pair too, and take what is slower.
+    pub(crate) fn least_strike(&self, restitution: i64, held: bool) -> i64 {
+        if restitution >= SPEED {
+            return SPEED / 1_000_000;
+        }
+        (if held { SPEED / 2 } else { SPEED / 100 }) << self.shift
+    }
+
+    /// The same for what came to rest in this tick: 0.1 m/s, 2 mm until the rows have it.
+    pub(crate) fn least_settled(&self) -> i64 {
+        (SPEED / 10) << self.shift
     }
 }

@@ -34,11 +34,11 @@ impl World {
             drive.set(slot, bodies.cold.value(slot), config.gravity, Some(push));
         }
 
-        touch.find(bodies, colliders, contacts, solver.scales.margins);
-        solver.prepare(touch, contacts, bodies, colliders);
+        touch.find(bodies, colliders, contacts, drive, solver.scales.margins);
+        solver.prepare(touch, contacts, bodies, drive);
         integrate(bodies, drive, faults);
-        solver.run(bodies, faults);
-        touch.finish(contacts, next, colliders, events, |pair| solver.outcome(touch, pair));
+        solver.run(touch, bodies, colliders, contacts, drive, faults);
+        touch.finish(contacts, next, colliders, events, |pair| solver.outcome(pair));
 
         for push in pushes.drain(..) {
             let slot = push.slot as usize;

@@ -1,0 +1,289 @@
+//! The answer to impacts: impulses for all points of the contacts that meet at one time, together (IM:col2D, GD:impulse).
+//!
+//! Wide arithmetic: impacts are few. As in the rows an impulse λ is carried as μ = λ·(1/m_a + 1/m_b), a velocity, and a
+//! body's turning as w = σ·ω, so that every coefficient is a ratio (`mobility.rs`).
+//!
+//! | value | format | bound |
+//! |---|---|---|
+//! | velocities, impulses | Q48 m/s | 2⁶¹ |
+//! | share p, lever p·τ | Q48 | 1, 231 |
+//! | arm α | Q48 | 8 |
+//! | κ | Q48 | 120² + 1 < 2¹⁴: a body's gyration is at least 1/120 of its reach |
+
+use super::mobility::Mobility;
+use crate::narrow::Manifold;
+use crate::num::{div, dot, mul};
+
+/// The velocities of a body: x, y and w.
+pub(crate) type Speed = [i64; 3];
+
+const LIMIT: i64 = 1 << 61;
+/// How often contacts are gone through at most until none changes.
+const ROUNDS: u32 = 64;
+
+fn bounded(v: i64) -> i64 {
+    v.clamp(-LIMIT, LIMIT)
+}
+
+/// A direction at a point, as levers on both bodies.
+#[derive(Clone, Copy, Debug, Default)]
+struct Row {
+    /// The direction, Q30.
+    along: [i64; 2],
+    /// α of a and of b.
+    arm: [i64; 2],
+    /// p·τ·α of a and of b.
+    turn: [i64; 2],
+    /// The speed that it is to have.
+    target: i64,
+    /// The impulse, accumulated.
+    impulse: i64,
+}
+
+impl Row {
+    /// The speed of a against b.
+    fn speed(&self, a: &Speed, b: &Speed) -> i64 {
+        let between = [a[0].saturating_sub(b[0]), a[1].saturating_sub(b[1])];
+        let turning = mul(self.arm[0], a[2], 48).saturating_sub(mul(self.arm[1], b[2], 48));
+        dot(between, self.along, 30).saturating_add(turning)
+    }
+
+    /// What an impulse of another row of the contact adds to the speed of this one by turning.
+    fn turned_by(&self, other: &Row) -> i64 {
+        mul(self.arm[0], other.turn[0], 48).saturating_add(mul(self.arm[1], other.turn[1], 48))
+    }
+}
+
+/// A contact at the time of its impact.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Strike {
+    /// Places of a and b among the speeds.
+    pub(crate) bodies: [usize; 2],
+    share: [i64; 2],
+    count: usize,
+    points: [Row; 2],
+    /// At the first point, along the normal turned counter-clockwise: both points slide alike.
+    friction: Row,
+    /// μ, Q48.
+    rough: i64,
+    /// The inverse of the matrix that takes impulses at both points to their speeds, Q48: of equal diagonal order, with
+    /// the other element; zero where a single point says all.
+    inverse: Option<[i64; 3]>,
+}
+
+impl Strike {
+    /// From a manifold whose points touch; `between`: from a's centre to b's, Q32.
+    pub(crate) fn new(
+        bodies: [usize; 2],
+        manifold: &Manifold,
+        between: [i64; 2],
+        mobility: [&Mobility; 2],
+        friction: i64,
+    ) -> Strike {
+        let [first, second] = [mobility[0].part(mobility[1]), mobility[1].part(mobility[0])];
+        let mut strike = Strike {
+            bodies,
+            share: [first, second],
+            count: manifold.count as usize,
+            rough: friction,
+            ..Strike::default()
+        };
+        let n = manifold.normal.map(i64::from);
+        let t = [n[1].saturating_neg(), n[0]];
+        let row = |along: [i64; 2], arm: [i64; 2]| {
+            let from_b = [arm[0].saturating_sub(between[0]), arm[1].saturating_sub(between[1])];
+            let arm = [(arm, 0), (from_b, 1)].map(|(r, body): ([i64; 2], usize)| {
+                // r × direction, Q32, over σ.
+                let lever = crate::num::cross(r, along, 30);
+                if mobility[body].fixed { 0 } else { mobility[body].over_sigma(lever, 32, 48) }
+            });
+            let turn = [0, 1].map(|body: usize| {
+                let lever = mul(strike.share[body], mobility[body].tau_fine, 48);
+                mul(lever, arm[body], 48)
+            });
+            Row { along, arm, turn, ..Row::default() }
+        };
+        let points = [0, 1].map(|at: usize| row(n, manifold.points[at].arm));
+        (strike.points, strike.friction) = (points, row(t, manifold.points[0].arm));
+        strike.inverse = strike.invert();
+        strike
+    }
+
+    /// κ of a row: what an impulse of it adds to its own speed.
+    fn kappa(&self, row: &Row) -> i64 {
+        let line = self.share[0].saturating_add(self.share[1]);
+        line.saturating_add(row.turned_by(row))
+    }
+
+    fn cross_term(&self) -> i64 {
+        let line = self.share[0].saturating_add(self.share[1]);
+        line.saturating_add(self.points[0].turned_by(&self.points[1]))
+    }
+
+    /// The inverse of the two points' matrix; none for one point, or if its rows say nearly the same.
+    fn invert(&self) -> Option<[i64; 3]> {
+        if self.count < 2 {
+            return None;
+        }
+        let [a, b] = [self.kappa(&self.points[0]), self.kappa(&self.points[1])];
+        let c = self.cross_term();
+        let product = |x: i64, y: i64| i128::from(x).saturating_mul(y.into());
+        let determinant = product(a, b).saturating_sub(product(c, c));
+        if determinant <= product(a, b) >> 30 {
+            return None;
+        }
+        // det is Q96; of an element over it the quotient has 64 − e more fraction bits than Q48 − Q96 + 64.
+        let down = 65u32.saturating_sub(determinant.leading_zeros());
+        let over = |element: i64| {
+            let quotient = div(i128::from(element) << 64, determinant >> down);
+            let shift = i64::from(32u32).saturating_sub(down.into());
+            crate::num::clamp_i64(if shift >= 0 {
+                quotient << shift.min(60)
+            } else {
+                quotient >> shift.unsigned_abs().min(120)
+            })
+        };
+        Some([over(b), over(c).saturating_neg(), over(a)])
+    }
+
+    /// The fastest approach of its points, not positive.
+    pub(crate) fn approach(&self, speeds: &[Speed]) -> i64 {
+        let [a, b] = self.bodies.map(|at| speeds[at]);
+        self.points[..self.count].iter().map(|row| row.speed(&a, &b)).min().unwrap_or(0).min(0)
+    }
+
+    /// Sets the speeds with which the points are to separate: C_R (Q48) times those with which they approach.
+    pub(crate) fn aim(&mut self, speeds: &[Speed], restitution: i64) {
+        let [a, b] = self.bodies.map(|at| speeds[at]);
+        for row in &mut self.points {
+            row.target = mul(row.speed(&a, &b).min(0), restitution, 48).saturating_neg();
+        }
+    }
+
+    /// The impulse of both points along the normal, and that of friction.
+    pub(crate) fn impulse(&self) -> [i64; 2] {
+        [self.points[0].impulse.saturating_add(self.points[1].impulse), self.friction.impulse]
+    }
+
+    /// Whether the impulses would add energy, beyond what rounding does: their work is half of the sum of
+    /// j·(v before + v after).
+    fn gains(&self, before: &[Speed], after: &[Speed]) -> bool {
+        let work = |row: &Row| {
+            let speed = |s: &[Speed]| i128::from(row.speed(&s[self.bodies[0]], &s[self.bodies[1]]));
+            let rounding = i128::from(row.impulse.unsigned_abs()) << 10;
+            let work = i128::from(row.impulse).saturating_mul(speed(before).saturating_add(speed(after)) >> 1);
+            work.saturating_sub(rounding)
+        };
+        let rows = self.points[..self.count].iter().chain([&self.friction]);
+        rows.fold(0i128, |sum, row| sum.saturating_add(work(row))) > 0
+    }
+
+    /// Takes friction out.
+    pub(crate) fn smooth(&mut self) {
+        self.rough = 0;
+    }
+
+    fn forget(&mut self) {
+        self.friction.impulse = 0;
+        self.points.iter_mut().for_each(|row| row.impulse = 0);
+    }
+
+    /// Once through friction and both points; the greatest change of an impulse.
+    fn sweep(&mut self, speeds: &mut [Speed]) -> i64 {
+        let mut changed = 0;
+        if self.rough > 0 {
+            let [a, b] = self.bodies.map(|at| speeds[at]);
+            let [load, _] = self.impulse();
+            let most = mul(load, self.rough, 48);
+            let slip = self.friction.speed(&a, &b);
+            let change = crate::num::clamp_i64(div(i128::from(slip) << 48, self.kappa(&self.friction).into()));
+            let impulse = self.friction.impulse.saturating_sub(change).clamp(most.saturating_neg(), most);
+            let change = impulse.saturating_sub(self.friction.impulse);
+            self.friction.impulse = impulse;
+            give(self.bodies, self.share, &self.friction, change, speeds);
+            changed = change.saturating_abs();
+        }
+        let change = self.answer(speeds);
+        for (at, change) in change.into_iter().enumerate() {
+            self.points[at].impulse = self.points[at].impulse.saturating_add(change);
+            give(self.bodies, self.share, &self.points[at], change, speeds);
+            changed = changed.max(change.saturating_abs());
+        }
+        changed
+    }
+
+    /// The changes of the points' impulses that give them their target speeds, none of them pulling.
+    fn answer(&self, speeds: &[Speed]) -> [i64; 2] {
+        let [a, b] = self.bodies.map(|at| speeds[at]);
+        let want = [0, 1].map(|at: usize| self.points[at].target.saturating_sub(self.points[at].speed(&a, &b)));
+        let least = [0, 1].map(|at: usize| self.points[at].impulse.saturating_neg());
+        let alone = |at: usize, want: i64| {
+            let kappa = self.kappa(&self.points[at]);
+            crate::num::clamp_i64(div(i128::from(want) << 48, kappa.into())).max(least[at])
+        };
+        let Some([k00, k01, k11]) = self.inverse else {
+            // One point, or two that are nearly the same: the one that wants more.
+            let deeper = usize::from(self.count > 1 && want[1] > want[0]);
+            let mut change = [0; 2];
+            change[deeper] = alone(deeper, want[deeper]);
+            return change;
+        };
+        let both = [
+            mul(k00, want[0], 48).saturating_add(mul(k01, want[1], 48)),
+            mul(k01, want[0], 48).saturating_add(mul(k11, want[1], 48)),
+        ];
+        match [both[0] < least[0], both[1] < least[1]] {
+            [false, false] => both,
+            [first, _] => {
+                // That one gives back what it has, and the other is alone; if then it wants after all, the next round sees.
+                let (held, free) = if first { (0, 1) } else { (1, 0) };
+                let mut change = [0; 2];
+                change[held] = least[held];
+                change[free] = alone(free, want[free].saturating_sub(mul(self.cross_term(), least[held], 48)));
+                change
+            }
+        }
+    }
+}
+
+/// An impulse of a row to both bodies.
+fn give(bodies: [usize; 2], share: [i64; 2], row: &Row, impulse: i64, speeds: &mut [Speed]) {
+    if impulse == 0 {
+        return;
+    }
+    for (body, sign) in [(0, 1), (1, -1i64)] {
+        let speed = &mut speeds[bodies[body]];
+        let impulse = impulse.saturating_mul(sign);
+        let line = mul(impulse, share[body], 48);
+        for (v, along) in speed.iter_mut().zip(row.along) {
+            *v = bounded(v.saturating_add(mul(line, along, 30)));
+        }
+        speed[2] = bounded(speed[2].saturating_add(mul(impulse, row.turn[body], 48)));
+    }
+}
+
+/// Solves the contacts, in their order, until no impulse changes any more. `restitutions`: C_R of each, Q48.
+///
+/// No impulse pulls, friction stays within Coulomb's cone, and energy does not grow: Newton's rule with friction can add
+/// energy (Kane 1984); then the contacts are answered without restitution, and if need be without friction.
+pub(crate) fn solve(strikes: &mut [Strike], restitutions: &[i64], speeds: &mut [Speed], before: &mut Vec<Speed>) {
+    before.clear();
+    before.extend_from_slice(speeds);
+    for attempt in 0..3 {
+        for (strike, &restitution) in strikes.iter_mut().zip(restitutions) {
+            strike.forget();
+            strike.aim(before, if attempt == 0 { restitution } else { 0 });
+            strike.rough = if attempt < 2 { strike.rough } else { 0 };
+        }
+        for _ in 0..ROUNDS {
+            let sweep = strikes.iter_mut().map(|strike| strike.sweep(speeds));
+            if sweep.fold(0, i64::max) <= 1 {
+                break;
+            }
+        }
+        if strikes.iter().all(|strike| strike.rough == 0 || !strike.gains(before, speeds)) {
+            return;
+        }
+        speeds.copy_from_slice(before);
+    }
+}

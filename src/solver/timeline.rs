@@ -1,0 +1,352 @@
+//! The impacts of a tick, in the order of their times (IM:col2D's t_c).
+//!
+//! Pairs that come together fast are not rows': each is looked for along the ways of its bodies, and answered when it
+//! meets. What touches at one time and hangs together by bodies that move is answered together; what a blow sends on
+//! meets again, at the same time or later. Bodies that rows push have a way for a substep only, so this goes on between
+//! the substeps.
+//!
+//! Source: conservative advancement after Mirtich (1996); time-ordered events with local body times.
+
+mod answer;
+
+use super::flight::{Flights, NONE, Past, State, TICK, motion};
+use super::mobility::Mobility;
+use super::mover::Movers;
+use super::scales::Scales;
+use super::strike::{Speed, Strike};
+use crate::body::{Bodies, Colliders};
+use crate::contact::Touch;
+use crate::motion::{Drive, Fault};
+use crate::narrow::first_touch;
+use crate::num::{lane::next, mul};
+use core::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Impacts within this of each other are one: 1 ns at 60 ticks/s, Q32 of a tick.
+const SAME: i64 = 256;
+/// How far the surfaces of an impact are apart at most: 0.2 µm, Q32 m; for bodies over 4 m more, as `first_touch` has it.
+const REACH: i64 = 860;
+/// Of two points, one that is farther out than the other by more than this takes no part: 15 µm. What lands flatter than
+/// that lands flat, where exactly it would fall from one corner to the other within microseconds.
+const FLAT: i64 = 1 << 16;
+/// How often a body is struck in a tick before its impacts take all speed out of it, and how often at all.
+const MANY: u32 = 256;
+const MOST: u32 = 320;
+/// Contacts that rows hold are struck on so often only, unless they are elastic: then rows have them back.
+const PASSED_ON: u32 = 8;
+
+/// A pair of colliders whose bodies may strike each other.
+#[derive(Clone, Copy, Debug)]
+struct Engaged {
+    colliders: [u32; 2],
+    /// Places of the flights.
+    flights: [u32; 2],
+    /// When they meet, Q32 of the tick; [`NEVER`] if they do not, as far as is known.
+    time: i64,
+    /// The next pair of each body.
+    next: [u32; 2],
+    /// Its place among the pairs of the tick, or [`NONE`].
+    pair: u32,
+    /// Whether it has rows.
+    held: bool,
+    /// How far they may overlap already, Q32 m.
+    depth: i64,
+    /// The least speed of approach that is answered, Q48 m/s.
+    least: i64,
+    /// C_R and the coefficient of friction, Q48.
+    restitution: i64,
+    friction: i64,
+}
+
+/// C_R = 1.
+const ONE: i64 = 1 << 48;
+/// When what only seemed to meet is looked at again: 1/64 of a tick later.
+const LATER: i64 = TICK >> 6;
+const NEVER: i64 = i64::MAX;
+/// As a place among the pairs of the tick: one of those that were not among them.
+const LATE: u32 = u32::MAX - 1;
+
+/// What stays the same while impacts are answered.
+pub(crate) struct Stage<'s> {
+    pub(crate) bodies: &'s Bodies,
+    pub(crate) colliders: &'s Colliders,
+    pub(crate) touch: &'s Touch,
+    pub(crate) drive: &'s Drive,
+    pub(crate) mobilities: &'s [Mobility],
+    pub(crate) scales: &'s Scales,
+}
+
+/// The impacts of a tick. Nothing in it lasts.
+#[derive(Debug, Default)]
+pub(crate) struct Timeline {
+    past: Past,
+    pub(crate) flights: Flights,
+    /// When the substep began.
+    from: i64,
+    engaged: Vec<Engaged>,
+    queue: BinaryHeap<Reverse<(i64, u32, u32, u32)>>,
+    /// Places of flights that were struck.
+    struck: Vec<u32>,
+    /// Pairs that were not among those of the tick and met: colliders, bodies.
+    pub(crate) late: Vec<[[u32; 2]; 2]>,
+    /// Places of those of the tick that met.
+    pub(crate) met: Vec<u32>,
+    // Space for one answer.
+    group: Vec<u32>,
+    locals: Vec<u32>,
+    speeds: Vec<Speed>,
+    before: Vec<Speed>,
+    strikes: Vec<Strike>,
+    restitutions: Vec<i64>,
+    members: Vec<u32>,
+    found: Vec<u32>,
+    settled: Vec<u32>,
+}
+
+impl Timeline {
+    /// Forgets the last tick.
+    pub(crate) fn clear(&mut self, slots: usize) {
+        self.flights.clear(slots);
+        self.engaged.clear();
+        self.queue.clear();
+        self.struck.clear();
+        self.late.clear();
+        self.met.clear();
+    }
+
+    /// While bodies are where the tick begins, and some pair may meet in it.
+    pub(crate) fn remember(&mut self, bodies: &Bodies) {
+        self.past.take(bodies);
+    }
+
+    /// Takes a pair of the tick in, after bodies have moved freely.
+    pub(crate) fn engage(&mut self, pair: usize, stage: &Stage<'_>, movers: &Movers) {
+        let of = &stage.touch.pairs[pair];
+        let at = self.add(of.colliders, of.bodies, pair as u32, false, stage, movers);
+        self.foresee(at, 0, TICK, stage);
+    }
+
+    fn add(
+        &mut self,
+        colliders: [u32; 2],
+        bodies: [u32; 2],
+        pair: u32,
+        held: bool,
+        stage: &Stage<'_>,
+        movers: &Movers,
+    ) -> usize {
+        let flights = bodies.map(|slot| self.flight(slot, stage, movers));
+        let at = self.engaged.len();
+        let [a, b] = colliders.map(|slot| stage.colliders.rows.value(slot as usize));
+        let restitution = a.restitution.combine(b.restitution).to_bits();
+        let friction = a.friction.combine(b.friction).to_bits();
+        let list = &mut self.flights.list;
+        let next = flights.map(|place| core::mem::replace(&mut list[place as usize].first, at as u32));
+        let least = stage.scales.least_strike(restitution, held);
+        let depth = stage.touch.pairs.get(pair as usize).map_or(0, |pair| pair.depth);
+        self.engaged.push(Engaged {
+            colliders,
+            flights,
+            time: NEVER,
+            next,
+            pair,
+            held,
+            depth,
+            least,
+            restitution,
+            friction,
+        });
+        at
+    }
+
+    /// Looks when a pair meets, from a time on and as far as the ways of its bodies are known: to `end` if rows push one.
+    fn foresee(&mut self, at: usize, from: i64, end: i64, stage: &Stage<'_>) {
+        let scales = stage.scales;
+        let pair = &mut self.engaged[at];
+        pair.time = NEVER;
+        let [a, b] = pair.flights.map(|place| &self.flights.list[place as usize]);
+        let strikes = a.strikes.max(b.strikes);
+        if strikes >= MOST || pair.held && strikes >= PASSED_ON && pair.restitution < ONE {
+            return;
+        }
+        let from = from.max(a.time).max(b.time);
+        let until = if a.pushed || b.pushed { end } else { TICK };
+        if from > until {
+            return;
+        }
+        let (p, q) = (a.at(from, scales), b.at(from, scales));
+        let motion = motion(&p, &q, [&a.gain, &b.gain], scales);
+        let outlines = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
+        let closing = mul(pair.least, scales.margins.tick, 71);
+        let slack = if a.place != 0 || b.place != 0 { scales.slack } else { pair.depth };
+        if let Some(after) = first_touch(outlines[0], outlines[1], &motion, until.saturating_sub(from), closing, slack)
+        {
+            let time = from.saturating_add(after);
+            pair.time = time;
+            self.queue.push(Reverse((time, pair.colliders[0], pair.colliders[1], at as u32)));
+        }
+    }
+
+    /// Answers the impacts up to a time of the tick. `from`: where the substep began.
+    pub(crate) fn run(
+        &mut self,
+        [from, to]: [i64; 2],
+        stage: &Stage<'_>,
+        movers: &mut Movers,
+        faults: &mut Vec<Fault>,
+    ) {
+        self.from = from;
+        self.follow(to, stage, movers);
+        while let Some(&Reverse((time, _, _, at))) = self.queue.peek() {
+            if time > to {
+                break;
+            }
+            self.queue.pop();
+            if self.engaged[at as usize].time == time {
+                self.gather(time, at, stage);
+                self.answer([from, to], stage, movers, faults);
+            }
+        }
+    }
+
+    /// Bodies that rows push go as these have them in this substep; what may meet them is looked at again.
+    fn follow(&mut self, to: i64, stage: &Stage<'_>, movers: &Movers) {
+        for place in 0..self.flights.list.len() {
+            if self.push(place, stage, movers) {
+                self.look_again(place, self.from, to, stage, false);
+            }
+        }
+    }
+
+    /// Puts a flight on the way of this substep if rows push its body, and says whether they do.
+    fn push(&mut self, place: usize, stage: &Stage<'_>, movers: &Movers) -> bool {
+        let flight = &mut self.flights.list[place];
+        let pushed = flight.place != 0 && movers.is_pushed(flight.place);
+        if pushed {
+            let slot = flight.slot as usize;
+            let begin = self.past.state(slot);
+            flight.state = movers.state(flight.place, &begin, &stage.mobilities[slot], stage.scales);
+            (flight.time, flight.gain, flight.pushed) = (self.from, [0; 3], true);
+        }
+        pushed
+    }
+
+    /// The place of a body's flight.
+    fn flight(&mut self, slot: u32, stage: &Stage<'_>, movers: &Movers) -> u32 {
+        let known = self.flights.list.len();
+        let place = self.flights.place(slot, &self.past, stage.bodies, movers);
+        if place as usize == known {
+            self.push(known, stage, movers);
+        }
+        place
+    }
+
+    /// Looks again when the pairs of a body meet.
+    fn look_again(&mut self, place: usize, from: i64, to: i64, stage: &Stage<'_>, struck: bool) {
+        let mut at = self.flights.list[place].first;
+        while at != NONE {
+            let Engaged { flights, next, held, restitution, .. } = self.engaged[at as usize];
+            if struck || !held || restitution >= ONE {
+                self.foresee(at as usize, from, to, stage);
+            }
+            at = next[usize::from(flights[0] as usize != place)];
+        }
+    }
+
+    /// The pairs that meet at a time and hang together with the first by bodies that move, in order.
+    fn gather(&mut self, time: i64, first: u32, stage: &Stage<'_>) {
+        self.group.clear();
+        self.group.push(first);
+        self.found.clear();
+        while let Some(&Reverse((other, _, _, at))) = self.queue.peek() {
+            if other > time.saturating_add(SAME) {
+                break;
+            }
+            self.queue.pop();
+            if self.engaged[at as usize].time == other && !self.group.contains(&at) && !self.found.contains(&at) {
+                self.found.push(at);
+            }
+        }
+        let mut seen = 0;
+        while seen < self.group.len() && !self.found.is_empty() {
+            let flights = self.engaged[self.group[seen] as usize].flights;
+            let joined = flights.map(|place| {
+                let slot = self.flights.list[place as usize].slot as usize;
+                if stage.mobilities[slot].moves() { place } else { NONE }
+            });
+            let (engaged, group) = (&self.engaged, &mut self.group);
+            self.found.retain(|&at| {
+                let hangs = engaged[at as usize].flights.iter().any(|place| joined.contains(place));
+                if hangs {
+                    group.push(at);
+                }
+                !hangs
+            });
+            seen = next(seen);
+        }
+        for &at in &self.found {
+            let Engaged { time, colliders: [a, b], .. } = self.engaged[at as usize];
+            self.queue.push(Reverse((time, a, b, at)));
+        }
+        let engaged = &self.engaged;
+        self.group.sort_unstable_by_key(|&at| engaged[at as usize].colliders);
+    }
+
+    /// A body that was struck goes another way: whom it may meet there.
+    fn meet_again(&mut self, place: usize, time: i64, to: i64, stage: &Stage<'_>, movers: &Movers) {
+        let Stage { bodies, colliders, touch, drive, mobilities, scales } = *stage;
+        let flight = self.flights.list[place];
+        let slot = flight.slot as usize;
+        let around = flight.around(time, mobilities[slot].reach, scales);
+        let mut found = core::mem::take(&mut self.found);
+        found.clear();
+        touch.around(&around, |collider| found.push(collider));
+        for &other in &self.struck {
+            let body = self.flights.list[other as usize].slot as usize;
+            found.extend(colliders.list(bodies.cold.value(body).first).map(|at| at as u32));
+        }
+        found.sort_unstable();
+        found.dedup();
+        for own in colliders.list(bodies.cold.value(slot).first) {
+            for &other in &found {
+                let (a, b) = (other.min(own as u32), other.max(own as u32));
+                if a == b || !touch.may_strike([a, b], bodies, colliders) || self.knows(place, [a, b]) {
+                    continue;
+                }
+                // Exactly, so that what the broad phase hands out besides has no say.
+                let body = colliders.rows.value(other as usize).body;
+                let at = self.flight(body, stage, movers);
+                let flight = &self.flights.list[at as usize];
+                let way = if flight.strikes > 0 {
+                    flight.around(time.max(flight.time), mobilities[body as usize].reach, scales)
+                } else {
+                    let State { x, v, .. } = self.past.state(body as usize);
+                    touch.way(other as usize, x, v, drive.gain(body as usize, scales.margins.tick), scales.margins)
+                };
+                if way.overlaps(&around) {
+                    let of = [a, b].map(|at| colliders.rows.value(at as usize).body);
+                    let (pair, held) = touch.pair_of([a, b]);
+                    if held && touch.pairs[pair as usize].restitution == 0 {
+                        continue;
+                    }
+                    self.add([a, b], of, pair, held, stage, movers);
+                }
+            }
+        }
+        self.found = found;
+        self.look_again(place, time, to, stage, true);
+    }
+
+    /// Whether two colliders, one of this body, are engaged already.
+    fn knows(&self, place: usize, colliders: [u32; 2]) -> bool {
+        let mut at = self.flights.list[place].first;
+        while at != NONE {
+            let pair = &self.engaged[at as usize];
+            if pair.colliders == colliders {
+                return true;
+            }
+            at = pair.next[usize::from(pair.flights[0] as usize != place)];
+        }
+        false
+    }
+}
