@@ -17,7 +17,7 @@ use super::strike::{Speed, Strike};
 use crate::body::{Bodies, Colliders};
 use crate::contact::Touch;
 use crate::motion::{Drive, Fault};
-use crate::narrow::first_touch;
+use crate::narrow::{Clearance, first_touch};
 use crate::num::{lane::next, mul};
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -56,6 +56,8 @@ struct Engaged {
     /// C_R and the coefficient of friction, Q48.
     restitution: i64,
     friction: i64,
+    /// What was seen of it.
+    clearance: Clearance,
 }
 
 /// C_R = 1.
@@ -155,6 +157,7 @@ impl Timeline {
             least,
             restitution,
             friction,
+            clearance: Clearance::default(),
         });
         at
     }
@@ -176,11 +179,14 @@ impl Timeline {
         }
         let (p, q) = (a.at(from, scales), b.at(from, scales));
         let motion = motion(&p, &q, [&a.gain, &b.gain], scales);
-        let outlines = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
+        let rest = until.saturating_sub(from);
+        if pair.clearance.lasts(&motion, rest) {
+            return;
+        }
+        let [one, other] = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
         let closing = mul(pair.least, scales.margins.tick, 71);
         let slack = if a.place != 0 || b.place != 0 { scales.slack } else { pair.depth };
-        if let Some(after) = first_touch(outlines[0], outlines[1], &motion, until.saturating_sub(from), closing, slack)
-        {
+        if let Some(after) = first_touch(one, other, &motion, rest, closing, slack, &mut pair.clearance) {
             let time = from.saturating_add(after);
             pair.time = time;
             self.queue.push(Reverse((time, pair.colliders[0], pair.colliders[1], at as u32)));
