@@ -9,13 +9,14 @@
 
 mod answer;
 
-use super::flight::{Flights, NONE, Past, State, TICK, motion};
+use super::flight::{Flight, Flights, NONE, Past, State, TICK, motion};
 use super::mobility::Mobility;
 use super::mover::Movers;
 use super::scales::Scales;
 use super::strike::{Speed, Strike};
 use crate::body::{Bodies, Colliders};
 use crate::contact::Touch;
+use crate::geom::Aabb;
 use crate::motion::{Drive, Fault};
 use crate::narrow::{Clearance, first_touch};
 use crate::num::{lane::next, mul};
@@ -102,6 +103,7 @@ pub(crate) struct Timeline {
     restitutions: Vec<i64>,
     members: Vec<u32>,
     found: Vec<u32>,
+    known: Vec<[u32; 2]>,
     settled: Vec<u32>,
 }
 
@@ -233,6 +235,9 @@ impl Timeline {
             let begin = self.past.state(slot);
             flight.state = movers.state(flight.place, &begin, &stage.mobilities[slot], stage.scales);
             (flight.time, flight.gain, flight.pushed) = (self.from, [0; 3], true);
+            if flight.strikes > 0 {
+                flight.surround(stage.mobilities[slot].reach, stage.scales);
+            }
         }
         pushed
     }
@@ -298,61 +303,61 @@ impl Timeline {
         self.group.sort_unstable_by_key(|&at| engaged[at as usize].colliders);
     }
 
-    /// A body that was struck goes another way: whom it may meet there.
+    /// A body that was struck goes another way: whom it may meet there. `around`: a box about that.
     fn meet_again(&mut self, place: usize, time: i64, to: i64, stage: &Stage<'_>, movers: &Movers) {
-        let Stage { bodies, colliders, touch, drive, mobilities, scales } = *stage;
-        let flight = self.flights.list[place];
-        let slot = flight.slot as usize;
-        let around = flight.around(time, mobilities[slot].reach, scales);
-        let mut found = core::mem::take(&mut self.found);
+        let Stage { bodies, colliders, touch, .. } = *stage;
+        let Flight { slot, around, .. } = self.flights.list[place];
+        let (mut found, mut known) = (core::mem::take(&mut self.found), core::mem::take(&mut self.known));
         found.clear();
         touch.around(&around, |collider| found.push(collider));
         for &other in &self.struck {
-            let body = self.flights.list[other as usize].slot as usize;
-            found.extend(colliders.list(bodies.cold.value(body).first).map(|at| at as u32));
+            let Flight { slot, around: other, .. } = self.flights.list[other as usize];
+            if other.overlaps(&around) {
+                found.extend(colliders.list(bodies.cold.value(slot as usize).first).map(|at| at as u32));
+            }
         }
         found.sort_unstable();
         found.dedup();
-        for own in colliders.list(bodies.cold.value(slot).first) {
+        self.pairs_of(place, &mut known);
+        for own in colliders.list(bodies.cold.value(slot as usize).first) {
             for &other in &found {
                 let (a, b) = (other.min(own as u32), other.max(own as u32));
-                if a == b || !touch.may_strike([a, b], bodies, colliders) || self.knows(place, [a, b]) {
+                // Exactly, so that what the broad phase hands out besides has no say.
+                if a == b || !self.way(other, stage).overlaps(&around) || known.contains(&[a, b]) {
                     continue;
                 }
-                // Exactly, so that what the broad phase hands out besides has no say.
-                let body = colliders.rows.value(other as usize).body;
-                let at = self.flight(body, stage, movers);
-                let flight = &self.flights.list[at as usize];
-                let way = if flight.strikes > 0 {
-                    flight.around(time.max(flight.time), mobilities[body as usize].reach, scales)
-                } else {
-                    let State { x, v, .. } = self.past.state(body as usize);
-                    touch.way(other as usize, x, v, drive.gain(body as usize, scales.margins.tick), scales.margins)
-                };
-                if way.overlaps(&around) {
+                let (pair, held) = touch.pair_of([a, b]);
+                let left = held && touch.pairs[pair as usize].restitution == 0;
+                if !left && touch.may_strike([a, b], bodies, colliders) {
                     let of = [a, b].map(|at| colliders.rows.value(at as usize).body);
-                    let (pair, held) = touch.pair_of([a, b]);
-                    if held && touch.pairs[pair as usize].restitution == 0 {
-                        continue;
-                    }
                     self.add([a, b], of, pair, held, stage, movers);
                 }
             }
         }
-        self.found = found;
+        (self.found, self.known) = (found, known);
         self.look_again(place, time, to, stage, true);
     }
 
-    /// Whether two colliders, one of this body, are engaged already.
-    fn knows(&self, place: usize, colliders: [u32; 2]) -> bool {
+    /// A box around the way of a collider: its body's own, or where impacts sent that.
+    fn way(&self, collider: u32, stage: &Stage<'_>) -> Aabb {
+        let body = stage.colliders.rows.value(collider as usize).body as usize;
+        match self.flights.known(body) {
+            Some(flight) if flight.strikes > 0 => flight.around,
+            _ => {
+                let (State { x, v, .. }, margins) = (self.past.state(body), stage.scales.margins);
+                stage.touch.way(collider as usize, x, v, stage.drive.gain(body, margins.tick), margins)
+            }
+        }
+    }
+
+    /// The colliders of all pairs of a body.
+    fn pairs_of(&self, place: usize, pairs: &mut Vec<[u32; 2]>) {
+        pairs.clear();
         let mut at = self.flights.list[place].first;
         while at != NONE {
             let pair = &self.engaged[at as usize];
-            if pair.colliders == colliders {
-                return true;
-            }
+            pairs.push(pair.colliders);
             at = pair.next[usize::from(pair.flights[0] as usize != place)];
         }
-        false
     }
 }

@@ -83,6 +83,10 @@ impl Timeline {
             self.note(self.members[at]);
         }
         self.rest(stage);
+        for &place in &self.locals {
+            let flight = &mut self.flights.list[place as usize];
+            flight.surround(stage.mobilities[flight.slot as usize].reach, scales);
+        }
         for at in 0..self.locals.len() {
             let place = self.locals[at];
             let slot = self.flights.list[place as usize].slot as usize;
