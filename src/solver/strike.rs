@@ -232,17 +232,20 @@ impl Strike {
             mul(k00, want[0], 48).saturating_add(mul(k01, want[1], 48)),
             mul(k01, want[0], 48).saturating_add(mul(k11, want[1], 48)),
         ];
-        match [both[0] < least[0], both[1] < least[1]] {
-            [false, false] => both,
-            [first, _] => {
-                // That one gives back what it has, and the other is alone; if then it wants after all, the next round sees.
-                let (held, free) = if first { (0, 1) } else { (1, 0) };
-                let mut change = [0; 2];
-                change[held] = least[held];
-                change[free] = alone(free, want[free].saturating_sub(mul(self.cross_term(), least[held], 48)));
-                change
-            }
+        if both[0] >= least[0] && both[1] >= least[1] {
+            return both;
         }
+        // One point gives back what it has, and the other answers alone: right if the first then separates by itself.
+        let single = |free: usize| {
+            let held = 1 ^ free;
+            let mut change = least;
+            change[free] = alone(free, want[free].saturating_sub(mul(self.cross_term(), least[held], 48)));
+            let own = mul(self.kappa(&self.points[held]), least[held], 48);
+            let speed = own.saturating_add(mul(self.cross_term(), change[free], 48));
+            (change, speed.saturating_sub(want[held]))
+        };
+        let [(first, second_parts), (second, first_parts)] = [single(0), single(1)];
+        if second_parts >= first_parts { first } else { second }
     }
 }
 
