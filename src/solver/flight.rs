@@ -47,6 +47,8 @@ pub(crate) struct Flight {
     /// How often it was struck in this tick, and a box around its way since then.
     pub(crate) strikes: u32,
     pub(crate) around: Aabb,
+    /// Whether the last answer that it took part in changed its velocities.
+    pub(crate) changed: bool,
     /// Rows push it: its way is known to the end of the substep only.
     pub(crate) pushed: bool,
 }

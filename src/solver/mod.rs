@@ -15,7 +15,7 @@ mod strike;
 mod timeline;
 
 use crate::body::{Bodies, Colliders};
-use crate::contact::{Contact, Contacts, NEW, Pair, Touch};
+use crate::contact::{Collision, Contact, Contacts, NEW, Pair, Touch};
 use crate::motion::{Drive, Fault};
 use crate::num::{cross, dot, mul};
 use color::Colors;
@@ -169,6 +169,11 @@ impl Solver {
             touch.pairs[pair as usize].met = true;
         }
         touch.join(&mut timeline.late, colliders, contacts);
+    }
+
+    /// The collisions of the tick.
+    pub(crate) fn collisions(&self) -> &[Collision] {
+        &self.timeline.collisions
     }
 
     /// What became of a contact, for the next tick.

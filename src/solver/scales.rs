@@ -1,7 +1,7 @@
 //! The constants of a world's contact solver.
 
 use crate::contact::Margins;
-use crate::num::{TURN_PER_RADIAN_Q64, div, round_shift};
+use crate::num::{TURN_PER_RADIAN_Q64, Time, div, mul, round_shift};
 
 /// Softness: a contact is a spring and damper of this frequency, as a part of the substep rate, and of this damping
 /// ratio; then nothing depends on the rate. Of it follow, with x = 2π·c and a = 2ζ + x:
@@ -113,6 +113,16 @@ impl Scales {
             return SPEED / 1_000_000;
         }
         (if held { SPEED / 2 } else { SPEED / 100 }) << self.shift
+    }
+
+    /// How fast contacts separate that are at rest all the same, Q48 m/s: 1 mm/s.
+    pub(crate) fn still(&self) -> i64 {
+        (SPEED / 1000) << self.shift
+    }
+
+    /// A part of the tick in seconds.
+    pub(crate) fn time(&self, part: i64) -> Time {
+        Time::from_bits(mul(part, self.margins.tick, 47))
     }
 
     /// The same for what came to rest in this tick: 0.1 m/s, 2 mm until the rows have it.

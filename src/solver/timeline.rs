@@ -15,7 +15,7 @@ use super::mover::Movers;
 use super::scales::Scales;
 use super::strike::{Speed, Strike};
 use crate::body::{Bodies, Colliders};
-use crate::contact::Touch;
+use crate::contact::{Collision, Touch};
 use crate::geom::Aabb;
 use crate::motion::{Drive, Fault};
 use crate::narrow::{Clearance, first_touch};
@@ -59,6 +59,8 @@ struct Engaged {
     friction: i64,
     /// What was seen of it.
     clearance: Clearance,
+    /// Whether an impact of this tick brought it to rest.
+    rests: bool,
 }
 
 /// C_R = 1.
@@ -94,17 +96,20 @@ pub(crate) struct Timeline {
     pub(crate) late: Vec<[[u32; 2]; 2]>,
     /// Places of those of the tick that met.
     pub(crate) met: Vec<u32>,
-    // Space for one answer.
+    /// What happened, and how many answers there were.
+    pub(crate) collisions: Vec<Collision>,
+    order: u32,
+    // Space for one answer: pairs that meet; places of their flights, how fast these are, and were; contacts.
     group: Vec<u32>,
     locals: Vec<u32>,
     speeds: Vec<Speed>,
     before: Vec<Speed>,
+    priors: Vec<State>,
+    members: Vec<u32>,
     strikes: Vec<Strike>,
     restitutions: Vec<i64>,
-    members: Vec<u32>,
     found: Vec<u32>,
     known: Vec<[u32; 2]>,
-    settled: Vec<u32>,
 }
 
 impl Timeline {
@@ -116,6 +121,8 @@ impl Timeline {
         self.struck.clear();
         self.late.clear();
         self.met.clear();
+        self.collisions.clear();
+        self.order = 0;
     }
 
     /// While bodies are where the tick begins, and some pair may meet in it.
@@ -160,6 +167,7 @@ impl Timeline {
             restitution,
             friction,
             clearance: Clearance::default(),
+            rests: false,
         });
         at
     }
