@@ -207,18 +207,20 @@ fn strikes(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scales, among: 
     let between = [between(bodies.x.bits()), between(bodies.y.bits())];
     let press = gain.map(|gain| dot(gain, n, 30));
     let mut closest = i64::MAX;
-    let mut approach = 0;
+    let mut slowest = i64::MAX;
     for point in &pair.manifold.points[..pair.manifold.count as usize] {
         let other = [point.arm[0].saturating_sub(between[0]), point.arm[1].saturating_sub(between[1])];
         let turning = |omega: i64, arm: [i64; 2]| mul(omega, cross(arm, n, 30), 32);
         let speed = dot(v, n, 30).saturating_add(turning(omega[0], point.arm)).saturating_sub(turning(omega[1], other));
         closest = closest.min(point.separation);
-        approach = approach.min(speed);
+        slowest = slowest.min(speed);
     }
-    let approach = approach.saturating_neg();
     let weight = press[0].saturating_abs().max(press[1].saturating_abs());
     let threshold = scales.threshold(pair.restitution, weight, among);
     // Across a gap forces make it faster; what rests is pressed by them and does not strike.
-    let press = if closest > scales.touching { press[1].saturating_sub(press[0]).max(0) } else { 0 };
-    approach.saturating_add(press) > threshold && closest > scales.slack.saturating_neg()
+    let (gap, pressed) = (closest > scales.touching, press[1].saturating_sub(press[0]).max(0));
+    let fast = slowest.min(0).saturating_neg().saturating_add(if gap { pressed } else { 0 }) > threshold;
+    // What parts needs no row in this tick, which would stop what turns it about, or another corner that swings in.
+    let parts = slowest.saturating_sub(pressed) > scales.parting(pair.restitution, gap);
+    (fast || parts) && closest > scales.slack.saturating_neg()
 }

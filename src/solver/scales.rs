@@ -115,6 +115,17 @@ impl Scales {
         (if held { SPEED / 2 } else { SPEED / 100 }) << self.shift
     }
 
+    /// The speed from which on a near pair parts, Q48 m/s: slower ones may be at rest, unless they bounce off everything.
+    /// In a pile much parts slowly, and comes to rest only if rows have it.
+    pub(crate) fn parting(&self, restitution: i64, gap: bool) -> i64 {
+        let most = SPEED << self.shift;
+        match (restitution >= SPEED, gap) {
+            (true, true) => 0,
+            (true, false) => most / 100,
+            (false, _) => most,
+        }
+    }
+
     /// How fast contacts separate that are at rest all the same, Q48 m/s: 1 mm/s.
     pub(crate) fn still(&self) -> i64 {
         (SPEED / 1000) << self.shift

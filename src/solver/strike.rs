@@ -75,9 +75,8 @@ pub(crate) struct Strike {
     rough: i64,
     /// What an impulse at one point adds to the speed of the other, Q48.
     couple: i64,
-    /// The inverse of the matrix that takes impulses at both points to their speeds, Q48: of equal diagonal order, with
-    /// the other element; zero where a single point says all.
-    inverse: Option<[i64; 3]>,
+    /// Of the matrix that takes impulses at both points to their speeds; none where a single point says all.
+    determinant: Option<i128>,
 }
 
 impl Strike {
@@ -121,33 +120,18 @@ impl Strike {
         (strike.points, strike.friction) = (points, row(t, manifold.points[0].arm));
         let line = strike.share[0].saturating_add(strike.share[1]);
         strike.couple = line.saturating_add(strike.points[0].turned_by(&strike.points[1]));
-        strike.inverse = strike.invert();
+        strike.determinant = strike.determinant();
         strike
     }
 
-    /// The inverse of the two points' matrix; none for one point, or if its rows say nearly the same.
-    fn invert(&self) -> Option<[i64; 3]> {
+    /// The determinant of the two points' matrix, Q96; none for one point, or if its rows say nearly the same.
+    fn determinant(&self) -> Option<i128> {
         if self.count < 2 {
             return None;
         }
-        let ([a, b], c) = (self.points.map(|row| row.kappa), self.couple);
-        let product = |x: i64, y: i64| i128::from(x).saturating_mul(y.into());
-        let determinant = product(a, b).saturating_sub(product(c, c));
-        if determinant <= product(a, b) >> 30 {
-            return None;
-        }
-        // det is Q96; of an element over it the quotient has 64 − e more fraction bits than Q48 − Q96 + 64.
-        let down = 65u32.saturating_sub(determinant.leading_zeros());
-        let over = |element: i64| {
-            let quotient = div(i128::from(element) << 64, determinant >> down);
-            let shift = i64::from(32u32).saturating_sub(down.into());
-            crate::num::clamp_i64(if shift >= 0 {
-                quotient << shift.min(60)
-            } else {
-                quotient >> shift.unsigned_abs().min(120)
-            })
-        };
-        Some([over(b), over(c).saturating_neg(), over(a)])
+        let [a, b] = self.points.map(|row| row.kappa);
+        let determinant = product(a, b).saturating_sub(product(self.couple, self.couple));
+        (determinant > product(a, b) >> 30).then_some(determinant)
     }
 
     /// The fastest approach of its points, not positive.
@@ -157,8 +141,19 @@ impl Strike {
     }
 
     /// Sets the speeds with which the points are to separate: C_R (Q48) times those with which they approach.
+    ///
+    /// Of two points of which one parts, that one takes no part in a bounce: what the other does to it would be an impulse
+    /// along a speed, and add energy. If it closes then, it is met again.
     pub(crate) fn aim(&mut self, speeds: &[Speed], restitution: i64) {
         let [a, b] = self.bodies.map(|at| speeds[at]);
+        let parts = [0, 1].map(|at: usize| self.points[at].speed(&a, &b) >= 0);
+        if restitution > 0 && self.count == 2 && parts[0] != parts[1] {
+            if parts[0] {
+                self.points.swap(0, 1);
+                self.arms.swap(0, 1);
+            }
+            (self.count, self.determinant) = (1, None);
+        }
         for row in &mut self.points {
             row.target = mul(row.speed(&a, &b).min(0), restitution, 48).saturating_neg();
         }
@@ -258,17 +253,18 @@ impl Strike {
         let want = [0, 1].map(|at: usize| self.points[at].target.saturating_sub(self.points[at].speed(&a, &b)));
         let least = [0, 1].map(|at: usize| self.points[at].impulse.saturating_neg());
         let alone = |at: usize, want: i64| mul(want, self.points[at].inverse, 62).max(least[at]);
-        let Some([k00, k01, k11]) = self.inverse else {
+        let Some(determinant) = self.determinant else {
             // One point, or two that are nearly the same: the one that wants more.
             let deeper = usize::from(self.count > 1 && want[1] > want[0]);
             let mut change = [0; 2];
             change[deeper] = alone(deeper, want[deeper]);
             return change;
         };
-        let both = [
-            mul(k00, want[0], 48).saturating_add(mul(k01, want[1], 48)),
-            mul(k01, want[0], 48).saturating_add(mul(k11, want[1], 48)),
-        ];
+        let both = [0, 1].map(|at: usize| {
+            let other = 1 ^ at;
+            let change = product(self.points[other].kappa, want[at]).saturating_sub(product(self.couple, want[other]));
+            over(change, determinant)
+        });
         if both[0] >= least[0] && both[1] >= least[1] {
             return both;
         }
@@ -284,6 +280,18 @@ impl Strike {
         let [(first, second_parts), (second, first_parts)] = [single(0), single(1)];
         if second_parts >= first_parts { first } else { second }
     }
+}
+
+/// Q96 from two of Q48.
+fn product(a: i64, b: i64) -> i128 {
+    i128::from(a).saturating_mul(b.into())
+}
+
+/// The quotient of two numbers in Q96, Q48. Both are shortened by what does not fit: the divisor has 66 bits at least, so
+/// it keeps 44, and what is wrong by that the next round sees.
+fn over(value: i128, by: i128) -> i64 {
+    let up = value.unsigned_abs().leading_zeros().saturating_sub(1).min(48);
+    crate::num::clamp_i64(div(value << up, by >> 48u32.saturating_sub(up)))
 }
 
 /// An impulse of a row to both bodies.
