@@ -47,7 +47,7 @@ pub(crate) struct Pair {
     pub(crate) row: u32,
     /// How far they overlap when the tick begins, if they are about to strike; Q32 m.
     pub(crate) depth: i64,
-    /// Whether it met in an impact.
+    /// Whether it met in an impact, or has no rows and overlapped when the tick began.
     pub(crate) met: bool,
     /// C_R and the coefficient of friction of the two, Q48.
     pub(crate) restitution: i64,

@@ -13,7 +13,8 @@
 //! circles that turn about points beside their centres, exchanged, by a few units.
 
 use super::clearance::Clearance;
-use super::course::{Course, Line, NEVER};
+use super::course::{Course, Line, NEVER, bound};
+use super::inner;
 use super::moment::{Axes, Moment, way};
 use crate::geom::Rot;
 use crate::num::{Angle, TURN_PER_RADIAN_Q64, mul};
@@ -111,6 +112,18 @@ pub(crate) fn first_touch(
 }
 
 impl Motion {
+    /// A bound of the speed of points of outlines of these reaches against each other, for the time 0 ..= until; Q40 m per
+    /// tick.
+    pub(crate) fn fastest(&self, reach: [i64; 2], until: i64) -> i64 {
+        let line = bound(self.v).saturating_add(mul(bound(self.a), until, 32));
+        let rim = |body: usize| {
+            let spin = self.omega[body].saturating_abs();
+            let spin = spin.saturating_add(mul(self.alpha[body].saturating_abs(), until, 32));
+            mul(spin, reach[body], 32).saturating_add(1)
+        };
+        line.saturating_add(rim(0)).saturating_add(rim(1)).saturating_add(1)
+    }
+
     /// In limits within which nothing wraps: 8192 m and 4096 rad a tick, and as much a tick².
     fn limited(mut self) -> Motion {
         let limit = |rate: &mut i64, most: i64| *rate = (*rate).clamp(most.wrapping_neg(), most);
@@ -190,7 +203,9 @@ impl Path {
     /// A time before which they cannot touch, found from the discs in which outlines turn; none if they never can.
     fn before(&self, outlines: [&Outline; 2], touch: i64, clearance: &mut Clearance) -> Option<i64> {
         let mut time = 0_i64;
-        if self.turning == [false; 2] {
+        let reach = i128::from(outlines[0].reach.saturating_add(outlines[1].reach));
+        let overlap = || inner(self.motion.d, self.motion.d) <= reach.wrapping_mul(reach);
+        if self.turning == [false; 2] || self.turning == [true; 2] && overlap() {
             return Some(time);
         }
         let disc = |body: usize| Placed { count: 1, radius: outlines[body].reach, ..Placed::default() };

@@ -91,8 +91,9 @@ impl Solver {
         for &at in &*fast {
             let pair = &mut touch.pairs[at as usize];
             let points = &pair.manifold.points[..pair.manifold.count as usize];
-            let deepest = points.iter().fold(0, |depth: i64, point| depth.max(point.separation.saturating_neg()));
-            pair.depth = deepest.saturating_add(ROUNDING);
+            let deepest = points.iter().map(|point| point.separation.saturating_neg()).max();
+            pair.met = deepest.is_some_and(|depth| depth >= 0);
+            pair.depth = deepest.unwrap_or(0).max(0).saturating_add(ROUNDING);
             pair.manifold.count = 0;
         }
         for pair in touch.pairs.iter_mut().filter(|pair| pair.manifold.count > 0) {

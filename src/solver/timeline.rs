@@ -190,11 +190,11 @@ impl Timeline {
         let (p, q) = (a.at(from, scales), b.at(from, scales));
         let motion = motion(&p, &q, [&a.gain, &b.gain], scales);
         let rest = until.saturating_sub(from);
-        if pair.clearance.lasts(&motion, rest) {
+        let closing = mul(pair.least, scales.margins.tick, 71);
+        let [one, other] = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
+        if motion.fastest([one.reach, other.reach], rest) < closing || pair.clearance.lasts(&motion, rest) {
             return;
         }
-        let [one, other] = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
-        let closing = mul(pair.least, scales.margins.tick, 71);
         let slack = if a.place != 0 || b.place != 0 { scales.slack } else { pair.depth };
         if let Some(after) = first_touch(one, other, &motion, rest, closing, slack, &mut pair.clearance) {
             let time = from.saturating_add(after);
