@@ -7,9 +7,9 @@
 //! between the ends of a time.
 
 use super::course::bound;
+use super::difference;
 use super::meeting::{Motion, NEAR};
 use super::moment::{Axes, Moment, way};
-use super::difference;
 use crate::num::{dot, mul};
 
 /// 2π, Q60.

@@ -133,7 +133,7 @@ impl Solver {
         faults: &mut Vec<Fault>,
     ) {
         let Solver { mobilities, scales, movers, before, places, fast, timeline, colors, blocks, .. } = self;
-        let stage = Stage { bodies, colliders, touch, drive, mobilities, scales };
+        let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[] };
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
         }
@@ -150,7 +150,7 @@ impl Solver {
                     block.solve::<true>(u8::MAX, &mut movers.lanes, scales);
                 }
                 movers.drift(scales);
-                timeline.run(scales.span(substep), &stage, movers, faults);
+                timeline.run(scales.span(substep), &Stage { blocks, ..stage }, movers, faults);
                 let all = substep % RELAX == 0 || substep == scales.substeps;
                 for block in blocks.iter_mut().filter(|block| all || block.pushes != 0) {
                     let lanes = if all { u8::MAX } else { block.pushes };
@@ -222,6 +222,6 @@ fn strikes(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scales, among: 
     let (gap, pressed) = (closest > scales.touching, press[1].saturating_sub(press[0]).max(0));
     let fast = slowest.min(0).saturating_neg().saturating_add(if gap { pressed } else { 0 }) > threshold;
     // What parts needs no row in this tick, which would stop what turns it about, or another corner that swings in.
-    let parts = slowest.saturating_sub(pressed) > scales.parting(pair.restitution, gap);
+    let parts = slowest.saturating_sub(pressed) > scales.parting(pair.restitution, gap, threshold, weight);
     (fast || parts) && closest > scales.slack.saturating_neg()
 }

@@ -106,23 +106,29 @@ impl Scales {
         if among { fast.max(press.saturating_mul(4)) } else { fast }
     }
 
-    /// The least speed of approach at which what was taken from the rows is answered as an impact, Q48 m/s; `held`: rows
-    /// have the pair too, and take what is slower.
-    pub(crate) fn least_strike(&self, restitution: i64, held: bool) -> i64 {
+    /// The least speed of approach at which what was taken from the rows is answered as an impact, Q48 m/s; `borne`: rows
+    /// bear a load there, and take what is slower.
+    pub(crate) fn least_strike(&self, restitution: i64, borne: bool) -> i64 {
         if restitution >= SPEED {
             return SPEED / 1_000_000;
         }
-        (if held { SPEED / 2 } else { SPEED / 100 }) << self.shift
+        let least = match (borne, restitution > 0) {
+            (true, false) => SPEED * 8,
+            (true, true) => SPEED * 2,
+            (false, false) => SPEED / 2,
+            (false, true) => SPEED / 100,
+        };
+        least << self.shift
     }
 
-    /// The speed from which on a near pair parts, Q48 m/s: slower ones may be at rest, unless they bounce off everything.
-    /// In a pile much parts slowly, and comes to rest only if rows have it.
-    pub(crate) fn parting(&self, restitution: i64, gap: bool) -> i64 {
-        let most = SPEED << self.shift;
+    /// The speed beyond which a near pair parts, Q48 m/s: slower ones may be at rest, unless they bounce off everything.
+    /// In a pile much parts slowly, and comes to rest only if rows have it. `threshold`, `press`: as above.
+    pub(crate) fn parting(&self, restitution: i64, gap: bool, threshold: i64, press: i64) -> i64 {
         match (restitution >= SPEED, gap) {
-            (true, true) => 0,
-            (true, false) => most / 100,
-            (false, _) => most,
+            (true, true) => -1,
+            (true, false) => (SPEED / 100) << self.shift,
+            (false, _) if press == 0 => threshold,
+            (false, _) => SPEED << self.shift,
         }
     }
 

@@ -12,6 +12,7 @@ mod answer;
 use super::flight::{Flight, Flights, NONE, Past, State, TICK, motion};
 use super::mobility::Mobility;
 use super::mover::Movers;
+use super::rows::{Block, LANES};
 use super::scales::Scales;
 use super::strike::{Speed, Strike};
 use crate::body::{Bodies, Colliders};
@@ -23,8 +24,9 @@ use crate::num::{lane::next, mul};
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Impacts within this of each other are one: 1 ns at 60 ticks/s, Q32 of a tick.
-const SAME: i64 = 256;
+/// Impacts within this of each other are one: 16 ns at 60 ticks/s, Q32 of a tick. Positions are rounded every tick, and
+/// two bodies that come to a third alike differ by 1 ns after some ticks.
+const SAME: i64 = 1 << 12;
 /// How far the surfaces of an impact are apart at most: 0.2 µm, Q32 m; for bodies over 4 m more, as `first_touch` has it.
 const REACH: i64 = 860;
 /// Of two points, one that is farther out than the other by more than this takes no part: 15 µm. What lands flatter than
@@ -33,6 +35,9 @@ const FLAT: i64 = 1 << 16;
 /// How often a body is struck in a tick before its impacts take all speed out of it, and how often at all.
 const MANY: u32 = 256;
 const MOST: u32 = 320;
+/// How often a pair is answered in a tick before what comes together slowly is left to rows, twice as fast each time: what
+/// rolls on another closes again and again. Not what is elastic.
+const OFTEN: u32 = 8;
 /// Contacts that rows hold are struck on so often only, unless they are elastic: then rows have them back.
 const PASSED_ON: u32 = 8;
 
@@ -50,6 +55,8 @@ struct Engaged {
     pair: u32,
     /// Whether it has rows.
     held: bool,
+    /// How often it was answered.
+    answers: u32,
     /// How far they may overlap already, Q32 m.
     depth: i64,
     /// The least speed of approach that is answered, Q48 m/s.
@@ -79,6 +86,17 @@ pub(crate) struct Stage<'s> {
     pub(crate) drive: &'s Drive,
     pub(crate) mobilities: &'s [Mobility],
     pub(crate) scales: &'s Scales,
+    pub(crate) seats: &'s [u32],
+    pub(crate) blocks: &'s [Block],
+}
+
+impl Stage<'_> {
+    /// Whether the rows of a pair bear a load now.
+    fn bears(&self, pair: u32) -> bool {
+        let row = self.touch.pairs.get(pair as usize).map_or(NONE, |pair| pair.row);
+        let seat = self.seats.get(row as usize).map(|&seat| seat as usize);
+        seat.is_some_and(|seat| self.blocks[seat / LANES].bears(seat % LANES))
+    }
 }
 
 /// The impacts of a tick. Nothing in it lasts.
@@ -153,7 +171,7 @@ impl Timeline {
         let friction = a.friction.combine(b.friction).to_bits();
         let list = &mut self.flights.list;
         let next = flights.map(|place| core::mem::replace(&mut list[place as usize].first, at as u32));
-        let least = stage.scales.least_strike(restitution, held);
+        let least = stage.scales.least_strike(restitution, held && stage.bears(pair));
         let depth = stage.touch.pairs.get(pair as usize).map_or(0, |pair| pair.depth);
         self.engaged.push(Engaged {
             colliders,
@@ -162,6 +180,7 @@ impl Timeline {
             next,
             pair,
             held,
+            answers: 0,
             depth,
             least,
             restitution,
@@ -196,6 +215,8 @@ impl Timeline {
             return;
         }
         let slack = if a.place != 0 || b.place != 0 { scales.slack } else { pair.depth };
+        // What closes so slowly that it is let, is not so deep when it closes faster that it is lost.
+        let slack = slack.max(mul(pair.least, scales.margins.tick, 78));
         if let Some(after) = first_touch(one, other, &motion, rest, closing, slack, &mut pair.clearance) {
             let time = from.saturating_add(after);
             pair.time = time;
@@ -335,15 +356,28 @@ impl Timeline {
                     continue;
                 }
                 let (pair, held) = touch.pair_of([a, b]);
-                let left = held && touch.pairs[pair as usize].restitution == 0;
-                if !left && touch.may_strike([a, b], bodies, colliders) {
-                    let of = [a, b].map(|at| colliders.rows.value(at as usize).body);
+                let of = [a, b].map(|at| colliders.rows.value(at as usize).body);
+                if !(held && self.is_slow(of, pair, stage)) && touch.may_strike([a, b], bodies, colliders) {
                     self.add([a, b], of, pair, held, stage, movers);
                 }
             }
         }
         (self.found, self.known) = (found, known);
         self.look_again(place, time, to, stage, true);
+    }
+
+    /// Whether bodies with rows are so slow that these take whatever comes together.
+    fn is_slow(&self, bodies: [u32; 2], pair: u32, stage: &Stage<'_>) -> bool {
+        let restitution = stage.touch.pairs[pair as usize].restitution;
+        let [a, b] = bodies.map(|slot| {
+            let at = slot as usize;
+            let state = self.flights.known(at).map_or_else(|| self.past.state(at), |flight| flight.state);
+            let mobility = &stage.mobilities[at];
+            (state.v, mul(state.omega.saturating_abs(), mobility.reach, 32))
+        });
+        let line = [0, 1].map(|axis: usize| a.0[axis].saturating_sub(b.0[axis]).saturating_abs());
+        let most = line[0].saturating_add(line[1]).saturating_add(a.1).saturating_add(b.1);
+        most < stage.scales.least_strike(restitution, stage.bears(pair))
     }
 
     /// A box around the way of a collider: its body's own, or where impacts sent that.

@@ -3,7 +3,7 @@
 use super::super::flight::{Flight, NONE, State, rim};
 use super::super::mover::Movers;
 use super::super::strike::{Strike, solve};
-use super::{Engaged, FLAT, LATE, LATER, MANY, MOST, NEVER, REACH, Stage, Timeline};
+use super::{Engaged, FLAT, LATE, LATER, MANY, MOST, NEVER, OFTEN, ONE, REACH, Stage, Timeline};
 use crate::contact::{Collision, Pace};
 use crate::geom::{Rot, Vec2};
 use crate::motion::{Bound, Fault};
@@ -78,6 +78,10 @@ impl Timeline {
             if !bounces {
                 // It rests, and is a row's in the next tick: until then it is not answered over and over.
                 pair.least = pair.least.max(stage.scales.least_settled());
+            }
+            pair.answers = pair.answers.saturating_add(1);
+            if pair.answers > OFTEN && pair.restitution < ONE {
+                pair.least = pair.least.saturating_mul(2);
             }
             self.restitutions.push(if bounces { pair.restitution } else { 0 });
             self.strikes.push(strike);
