@@ -9,9 +9,12 @@ mod impact;
 mod solid;
 
 use common::{Rng, close, close2, disc, newtons, num, omega, position, rectangle, run, velocity, world};
-use impact::{Free, Hit, Side, TICK, collide, pebble, until_struck};
-use solid::{add, energy, fixed, get, mass_of, moving, polygon, scaled_world, solid, spin, surface, turned, weighing};
-use tamias2d::{BodyDef, BodyId, ColliderDef, World};
+use impact::{Free, Hit, Side, TICK, body, collide, pebble, scatter, until_struck, wall_in};
+use solid::{
+    add, energy, fixed, get, mass_of, moving, polygon, scaled_world, solid, spin, surface, turned, weighing,
+    worst_overlap,
+};
+use tamias2d::{BodyDef, BodyId, BodyKind, ColliderDef, World};
 
 const G: f64 = 9.81;
 
@@ -447,4 +450,74 @@ fn tc11c_the_box_reverses_at_its_time() {
             close(omega(&world, id), 0.0, 1e-9);
         }
     }
+}
+
+// A gas (properties of a correct solution: no systematic gain).
+
+/// What became of 200 polygons in a closed room.
+struct Gas {
+    /// Of the energy, at the end and at most.
+    end: f64,
+    worst: f64,
+    overlap: f64,
+}
+
+/// 200 polygons at up to ±10 m/s in a closed room of 40 m, elastic and without friction.
+fn gas(seed: u64, gravity: f64, ticks: u32) -> Gas {
+    let (mut world, mut rng) = (world(0.0, gravity), Rng(seed));
+    wall_in(&mut world, 20.0, 0.0, 1.0);
+    scatter(&mut world, 200, 10.0, &mut rng, |rng| body(pebble(rng), 0.0, 1.0));
+    // PE counts from the floor.
+    let weight = world.bodies().filter(|body| body.kind() == BodyKind::Dynamic).map(|body| body.mass().to_f64());
+    let base = weight.sum::<f64>() * -gravity * 20.0;
+    let total = |world: &World| energy(world) + base;
+    let start = total(&world);
+    let mut gas = Gas { end: 0.0, worst: 0.0, overlap: 0.0 };
+    for tick in 1..=ticks {
+        world.step();
+        if tick % 5 == 0 || tick == ticks {
+            gas.overlap = gas.overlap.max(worst_overlap(&world));
+            gas.end = total(&world) / start - 1.0;
+            gas.worst = gas.worst.max(gas.end.abs());
+        }
+    }
+    assert!(world.status().is_clear(), "{:?}", world.status());
+    world.check().expect("every invariant holds");
+    gas
+}
+
+/// Runs a gas of each seed, and the mean of the changes of energy.
+fn gases(seeds: u64, gravity: f64, ticks: u32, budget: f64) -> f64 {
+    let mut sum = 0.0;
+    for seed in 1..=seeds {
+        let begin = std::time::Instant::now();
+        let Gas { end, worst, overlap } = gas(seed, gravity, ticks);
+        let took = begin.elapsed().as_secs_f64();
+        println!("seed {seed}, g {gravity}: {end:+.1e} (at most {worst:.1e}), overlap {overlap:.1e} m, {took:.1} s");
+        assert!(worst < budget, "seed {seed}: {worst:e} of the energy");
+        assert!(overlap < 1e-5, "seed {seed}: they overlap by {overlap} m");
+        sum += end;
+    }
+    sum / seeds as f64
+}
+
+#[test]
+fn an_elastic_gas_keeps_its_energy_for_a_while() {
+    let mean = gases(2, 0.0, 1200, 1e-5);
+    assert!(mean.abs() < 1e-6, "{mean:e}");
+    gases(1, -G, 600, 1e-4);
+}
+
+#[test]
+#[ignore = "minutes: cargo test --release --test impacts -- --ignored"]
+fn an_elastic_gas_keeps_its_energy() {
+    let mean = gases(10, 0.0, 10_000, 1e-5);
+    println!("mean {mean:+.1e}");
+    assert!(mean.abs() < 1e-6, "ten gases drift by {mean:e}");
+}
+
+#[test]
+#[ignore = "minutes: cargo test --release --test impacts -- --ignored"]
+fn an_elastic_gas_in_gravity_keeps_its_energy() {
+    gases(3, -G, 10_000, 1e-4);
 }
