@@ -159,8 +159,8 @@ fn lossy(shape: &ColliderDef, gap: f64, e: f64) -> (Vec<f64>, f64) {
     let mut differ = 0.0f64;
     for (a, b) in went.iter().zip(&back) {
         differ = differ.max(a.faster(b));
-        // What is slow is the rows', which read 2⁻²⁰ m/s.
-        assert!(a.v[1].abs().max(a.omega.abs()) < 2e-5, "{a:?}");
+        // What is slow, or does not bounce, is the rows': they turn a box a little.
+        assert!(a.v[1].abs().max(a.omega.abs()) < 2e-3, "{a:?}");
     }
     let v: Vec<f64> = went.iter().map(|state| state.v[0]).collect();
     println!("{:?}, gap {gap}, e {e}: {v:.4?}, backwards {differ:.4} off", shape.shape);
