@@ -7,7 +7,7 @@ mod impact;
 #[path = "common/solid.rs"]
 mod solid;
 
-use common::{Rng, at, disc, position, rectangle, run, velocity};
+use common::{Rng, at, disc, position, rectangle, velocity};
 use impact::{Free, body, pebble, scatter, wall_in};
 use solid::{add, energy, fixed, moving, polygon, scaled_world, solid, spin, surface, turned, weighing, worst_overlap};
 use tamias2d::{BodyDef, BodyKind, ColliderDef, World};
