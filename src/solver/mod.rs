@@ -26,6 +26,7 @@ use mover::Movers;
 use prepare::Joint;
 use rows::{Block, LANES};
 pub(crate) use scales::Scales;
+use scales::weight;
 use timeline::{Stage, Timeline};
 
 /// How many substeps pass between sweeps that take back what pushing overlaps apart added to velocities: there is one
@@ -216,7 +217,7 @@ fn strikes(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scales, among: 
         closest = closest.min(point.separation);
         slowest = slowest.min(speed);
     }
-    let weight = press[0].saturating_abs().max(press[1].saturating_abs());
+    let weight = weight(gain[0]).max(weight(gain[1]));
     let threshold = scales.threshold(pair.restitution, weight, among);
     // Across a gap forces make it faster; what rests is pressed by them and does not strike.
     let (gap, pressed) = (closest > scales.touching, press[1].saturating_sub(press[0]).max(0));

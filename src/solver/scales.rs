@@ -90,7 +90,7 @@ impl Scales {
     }
 
     /// The speed of approach from which on a pair with this C_R (Q48) strikes instead of being pressed together, Q48 m/s.
-    /// `press`: what forces add in a tick to the speed of one of them; `among`: whether both lie among others.
+    /// `press`: what forces add in a tick to the speed of one of them ([`weight`]); `among`: whether both lie among others.
     ///
     /// Below g·T/2·C_R a bounce would end within the tick, at a height of a third of a millimetre. What does not bounce is
     /// the rows' up to 1 m/s, which they stop as well; and so is a pile that settles, up to 4·g·T.
@@ -146,4 +146,11 @@ impl Scales {
     pub(crate) fn least_settled(&self) -> i64 {
         (SPEED / 10) << self.shift
     }
+}
+
+/// What forces add in a tick to a body's speed, in whatever direction: in a pile loads come from all sides. At most an
+/// eighth too much.
+pub(crate) fn weight(gain: [i64; 2]) -> i64 {
+    let [x, y] = gain.map(i64::saturating_abs);
+    x.max(y).saturating_add(x.min(y) >> 1)
 }

@@ -69,6 +69,8 @@ pub(crate) struct Strike {
     /// From a's centre to the points, Q32.
     arms: [[i64; 2]; 2],
     points: [Row; 2],
+    /// Of bodies that go on as one: at a second point, along the normal and across.
+    brace: Option<[Row; 2]>,
     /// At the first point, along the normal turned counter-clockwise: both points slide alike.
     friction: Row,
     /// μ, Q48.
@@ -87,6 +89,7 @@ impl Strike {
         between: [i64; 2],
         mobility: [&Mobility; 2],
         friction: i64,
+        joined: bool,
     ) -> Strike {
         let [first, second] = [mobility[0].part(mobility[1]), mobility[1].part(mobility[0])];
         let mut strike = Strike {
@@ -118,6 +121,11 @@ impl Strike {
         };
         let points = [0, 1].map(|at: usize| row(n, manifold.points[at].arm));
         (strike.points, strike.friction) = (points, row(t, manifold.points[0].arm));
+        if joined {
+            // Held at the point and at the centre of one that moves, they neither slide nor turn against each other.
+            let second = if mobility[0].moves() { [0; 2] } else { between };
+            (strike.brace, strike.count, strike.rough) = (Some([row(n, second), row(t, second)]), 1, 0);
+        }
         let line = strike.share[0].saturating_add(strike.share[1]);
         strike.couple = line.saturating_add(strike.points[0].turned_by(&strike.points[1]));
         strike.determinant = strike.determinant();
@@ -159,6 +167,11 @@ impl Strike {
         }
     }
 
+    /// Whether its bodies go on as one.
+    pub(crate) fn is_joined(&self) -> bool {
+        self.brace.is_some()
+    }
+
     /// How fast its points separate, the fastest of them.
     pub(crate) fn parting(&self, speeds: &[Speed]) -> i64 {
         let [a, b] = self.bodies.map(|at| speeds[at]);
@@ -184,7 +197,10 @@ impl Strike {
     /// What a gets, from the masses of both bodies: λ = μ·p·m, of the body whose share p is greater.
     pub(crate) fn impulse_on_a(&self, masses: [Mass; 2], shift: u32) -> Vec2<Impulse> {
         let heavy = usize::from(self.share[1] > self.share[0]);
-        let [load, slide] = self.impulse();
+        let [mut load, mut slide] = self.impulse();
+        if let Some([along, across]) = &self.brace {
+            (load, slide) = (load.saturating_add(along.impulse), slide.saturating_add(across.impulse));
+        }
         let [n, t] = [self.points[0].along, self.friction.along];
         let along = |axis: usize| {
             let speed = dot([load, slide], [n[axis], t[axis]], 30);
@@ -220,12 +236,22 @@ impl Strike {
 
     fn forget(&mut self) {
         self.friction.impulse = 0;
-        self.points.iter_mut().for_each(|row| row.impulse = 0);
+        self.points.iter_mut().chain(self.brace.iter_mut().flatten()).for_each(|row| row.impulse = 0);
     }
 
     /// Once through friction and both points; the greatest change of an impulse.
     fn sweep(&mut self, speeds: &mut [Speed]) -> i64 {
         let mut changed = 0;
+        if let Some(brace) = &mut self.brace {
+            for row in brace.iter_mut().chain([&mut self.friction, &mut self.points[0]]) {
+                let [a, b] = self.bodies.map(|at| speeds[at]);
+                let change = mul(row.speed(&a, &b), row.inverse, 62).saturating_neg();
+                row.impulse = row.impulse.saturating_add(change);
+                give(self.bodies, self.share, row, change, speeds);
+                changed = changed.max(change.saturating_abs());
+            }
+            return changed;
+        }
         if self.rough > 0 {
             let [a, b] = self.bodies.map(|at| speeds[at]);
             let [load, _] = self.impulse();

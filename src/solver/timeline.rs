@@ -35,8 +35,8 @@ const FLAT: i64 = 1 << 16;
 /// How often a body is struck in a tick before its impacts take all speed out of it, and how often at all.
 const MANY: u32 = 256;
 const MOST: u32 = 320;
-/// How often a pair is answered in a tick before what comes together slowly is left to rows, twice as fast each time: what
-/// rolls on another closes again and again. Not what is elastic.
+/// How often a pair is answered in a tick before its bodies go on as one while they touch: what rolls on another, or is
+/// struck to and fro, would close again and again. Not what is elastic.
 const OFTEN: u32 = 8;
 /// Contacts that rows hold are struck on so often only, unless they are elastic: then rows have them back.
 const PASSED_ON: u32 = 8;

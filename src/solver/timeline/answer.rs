@@ -2,13 +2,14 @@
 
 use super::super::flight::{Flight, NONE, State, rim};
 use super::super::mover::Movers;
+use super::super::scales::weight;
 use super::super::strike::{Strike, solve};
 use super::{Engaged, FLAT, LATE, LATER, MANY, MOST, NEVER, OFTEN, ONE, REACH, Stage, Timeline};
 use crate::contact::{Collision, Pace};
 use crate::geom::{Rot, Vec2};
 use crate::motion::{Bound, Fault};
 use crate::narrow::{Manifold, collide};
-use crate::num::{Angle, AngularVelocity, Velocity, add_sat, dot, lane::next, round_shift};
+use crate::num::{Angle, AngularVelocity, Velocity, add_sat, lane::next, round_shift};
 use crate::shape::Placed;
 
 /// So many contacts are answered together at most, but for those that meet at one time.
@@ -64,25 +65,22 @@ impl Timeline {
         for at in 0..self.group.len() {
             let at = self.group[at];
             self.engaged[at as usize].time = NEVER;
-            let Some((manifold, strike)) = self.contact(at, time, stage) else { continue };
+            let Some(strike) = self.contact(at, time, stage) else { continue };
             let pair = &mut self.engaged[at as usize];
             let approach = strike.approach(&self.speeds).saturating_neg();
             if approach <= pair.least / 2 {
                 continue;
             }
             let [a, b] = pair.flights.map(|place| &self.flights.list[place as usize]);
-            let press = press(a, b, manifold.normal);
+            let press = press(a, b);
             let threshold = stage.scales.threshold(pair.restitution, press, a.place != 0 && b.place != 0);
-            let spent = a.strikes.max(b.strikes) >= MANY;
+            let spent = a.strikes.max(b.strikes) >= MANY || strike.is_joined();
             let bounces = approach > threshold && !spent;
             if !bounces {
                 // It rests, and is a row's in the next tick: until then it is not answered over and over.
                 pair.least = pair.least.max(stage.scales.least_settled());
             }
             pair.answers = pair.answers.saturating_add(1);
-            if pair.answers > OFTEN && pair.restitution < ONE {
-                pair.least = pair.least.saturating_mul(2);
-            }
             self.restitutions.push(if bounces { pair.restitution } else { 0 });
             self.strikes.push(strike);
             self.members.push(at);
@@ -108,7 +106,7 @@ impl Timeline {
                 if rests && !self.members.contains(&at) {
                     let known = self.locals.len();
                     match self.contact(at, time, stage) {
-                        Some((_, strike)) if !bounces || strike.parting(&self.speeds) <= stage.scales.still() => {
+                        Some(strike) if !bounces || strike.parting(&self.speeds) <= stage.scales.still() => {
                             self.restitutions.push(0);
                             self.strikes.push(strike);
                             self.members.push(at);
@@ -122,15 +120,15 @@ impl Timeline {
     }
 
     /// The contact of a pair at a time, if it touches; its bodies are taken in.
-    fn contact(&mut self, at: u32, time: i64, stage: &Stage<'_>) -> Option<(Manifold, Strike)> {
+    fn contact(&mut self, at: u32, time: i64, stage: &Stage<'_>) -> Option<Strike> {
         let pair = &self.engaged[at as usize];
         let bodies = pair.flights.map(|place| self.local(place, time, stage));
         let pair = &self.engaged[at as usize];
         let [a, b] = pair.flights.map(|place| &self.flights.list[place as usize]);
         let (manifold, between) = touching(pair, a, b, stage)?;
         let mobility = [a, b].map(|flight| &stage.mobilities[flight.slot as usize]);
-        let strike = Strike::new(bodies, &manifold, between, mobility, pair.friction);
-        Some((manifold, strike))
+        let joined = pair.answers >= OFTEN && pair.restitution < ONE;
+        Some(Strike::new(bodies, &manifold, between, mobility, pair.friction, joined))
     }
 
     /// The place of a body among those of the answer, to whose time it is brought.
@@ -302,9 +300,7 @@ fn touching(pair: &Engaged, a: &Flight, b: &Flight, stage: &Stage<'_>) -> Option
     near.then_some((manifold, between))
 }
 
-/// How fast forces press on one of two bodies along a normal in a tick, Q48 m/s.
-fn press(a: &Flight, b: &Flight, normal: [i32; 2]) -> i64 {
-    let n = normal.map(i64::from);
-    let along = |flight: &Flight| dot(flight.weight, n, 30).saturating_abs();
-    along(a).max(along(b))
+/// How fast forces press on one of two bodies in a tick, Q48 m/s.
+fn press(a: &Flight, b: &Flight) -> i64 {
+    weight(a.weight).max(weight(b.weight))
 }
