@@ -47,6 +47,8 @@ pub(crate) struct Flight {
     /// How often it was struck in this tick, and a box around its way since then.
     pub(crate) strikes: u32,
     pub(crate) around: Aabb,
+    /// The number of the last answer after which its pairs were looked at, from 1 on.
+    pub(crate) looked: u32,
     /// Whether the last answer that it took part in changed its velocities.
     pub(crate) changed: bool,
     /// Rows push it: its way is known to the end of the substep only.

@@ -248,9 +248,15 @@ impl Timeline {
 
     /// Bodies that rows push go as these have them in this substep; what may meet them is looked at again.
     fn follow(&mut self, to: i64, stage: &Stage<'_>, movers: &Movers) {
+        let mut any = false;
         for place in 0..self.flights.list.len() {
-            if self.push(place, stage, movers) {
-                self.look_again(place, self.from, to, stage, false);
+            any |= self.push(place, stage, movers);
+        }
+        for at in 0..if any { self.engaged.len() } else { 0 } {
+            let Engaged { flights, held, restitution, .. } = self.engaged[at];
+            let pushed = flights.iter().any(|&place| self.flights.list[place as usize].pushed);
+            if pushed && (!held || restitution >= ONE) {
+                self.foresee(at, self.from, to, stage);
             }
         }
     }
@@ -281,16 +287,19 @@ impl Timeline {
         place
     }
 
-    /// Looks again when the pairs of a body meet.
-    fn look_again(&mut self, place: usize, from: i64, to: i64, stage: &Stage<'_>, struck: bool) {
+    /// Looks again when the pairs of a body that was struck meet.
+    fn look_again(&mut self, place: usize, from: i64, to: i64, stage: &Stage<'_>) {
         let mut at = self.flights.list[place].first;
         while at != NONE {
-            let Engaged { flights, next, held, restitution, .. } = self.engaged[at as usize];
-            if struck || !held || restitution >= ONE {
+            let Engaged { flights, next, .. } = self.engaged[at as usize];
+            let side = usize::from(flights[0] as usize != place);
+            // Of two that one answer changed, the first has looked at their pair.
+            if self.flights.list[flights[1 ^ side] as usize].looked != self.order {
                 self.foresee(at as usize, from, to, stage);
             }
-            at = next[usize::from(flights[0] as usize != place)];
+            at = next[side];
         }
+        self.flights.list[place].looked = self.order;
     }
 
     /// The pairs that meet at a time and hang together with the first by bodies that move, in order.
@@ -363,7 +372,7 @@ impl Timeline {
             }
         }
         (self.found, self.known) = (found, known);
-        self.look_again(place, time, to, stage, true);
+        self.look_again(place, time, to, stage);
     }
 
     /// Whether bodies with rows are so slow that these take whatever comes together.
