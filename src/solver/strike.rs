@@ -19,9 +19,11 @@ use crate::num::{Impulse, Length, Mass, Quantity, div, dot, mul, mul_div};
 pub(crate) type Speed = [i64; 3];
 
 const LIMIT: i64 = 1 << 61;
-/// How often contacts are gone through at most, until no impulse changes any more; where nothing bounces, by no more than
-/// a millionth of the fastest approach.
+/// How often contacts are gone through at most, until no impulse changes any more; if nothing is elastic, by no more than
+/// a 2²²th of the fastest approach.
 const ROUNDS: u32 = 64;
+/// C_R = 1.
+const ONE: i64 = 1 << 48;
 
 fn bounded(v: i64) -> i64 {
     v.clamp(-LIMIT, LIMIT)
@@ -343,9 +345,9 @@ fn give(bodies: [usize; 2], share: [i64; 2], row: &Row, impulse: i64, speeds: &m
 pub(crate) fn solve(strikes: &mut [Strike], restitutions: &[i64], speeds: &mut [Speed], before: &mut Vec<Speed>) {
     before.clear();
     before.extend_from_slice(speeds);
-    let bounces = restitutions.iter().any(|&restitution| restitution > 0);
+    let elastic = restitutions.iter().any(|&restitution| restitution >= ONE);
     let approach = strikes.iter().fold(0, |least, strike| strike.approach(speeds).min(least));
-    let enough = if bounces { 1 } else { (approach.saturating_neg() >> 20).max(1) };
+    let enough = if elastic { 1 } else { (approach.saturating_neg() >> 22).max(1) };
     for attempt in 0..3 {
         for (strike, &restitution) in strikes.iter_mut().zip(restitutions) {
             strike.forget();
