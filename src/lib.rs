@@ -37,11 +37,11 @@ mod store;
 mod world;
 
 pub use body::{Attractor, BodyDef, BodyError, BodyKind};
-pub use contact::{Event, EventKind};
+pub use contact::{Collision, Event, EventKind, Pace};
 pub use geom::{Aabb, Rot, Vec2};
 pub use num::{
     Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Density, Energy, Force, Friction, Impulse, Inertia,
-    Length, Mass, Mu, NumError, Radians, RangeError, Restitution, Torque, Velocity,
+    Length, Mass, Mu, NumError, Radians, RangeError, Restitution, Time, Torque, Velocity,
 };
 pub use shape::{ColliderDef, Filter, Shape, ShapeError};
 pub use snapshot::{HashPart, LAW, SAVE_VERSION};

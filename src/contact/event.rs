@@ -1,5 +1,7 @@
 //! What a step tells of contacts.
 
+use crate::geom::Vec2;
+use crate::num::{AngularVelocity, Impulse, Length, Time, Velocity};
 use crate::store::ColliderId;
 use core::fmt;
 use serde::{Deserialize, Serialize};
@@ -43,4 +45,37 @@ impl fmt::Display for Event {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} of {} and {}", self.kind, self.a, self.b)
     }
+}
+
+/// How fast a body is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Pace {
+    /// Of its centre of mass.
+    pub velocity: Vec2<Velocity>,
+    /// Counter-clockwise positive.
+    pub angular_velocity: AngularVelocity,
+}
+
+/// A collision of a step, answered at its time (IM:col2D): a value, not state. Those of one step are in the order in which
+/// they happened. What rests, or comes together too slowly to bounce, has none: rows hold it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Collision {
+    /// The collider in the lower slot.
+    pub a: ColliderId,
+    /// The other one.
+    pub b: ColliderId,
+    /// Which answer of the step it belongs to, from 0 on: contacts that meet at one time are answered together.
+    pub order: u32,
+    /// t_c, since the step began: 0 to 1/tick_rate.
+    pub time: Time,
+    /// Where the impulse acts; between two points by their shares of it. Rounding: to nearest.
+    pub point: Vec2<Length>,
+    /// From b to a, unit, 30 fraction bits.
+    pub normal: [i32; 2],
+    /// On a, friction included; b gets the negative. Rounding: 2⁻⁴⁷ of it and 2⁻⁴⁸ m/s times the lesser mass.
+    pub impulse: Vec2<Impulse>,
+    /// The bodies of a and of b before the answer.
+    pub before: [Pace; 2],
+    /// And after all of it: the contacts of one order share their bodies' changes.
+    pub after: [Pace; 2],
 }

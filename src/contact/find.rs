@@ -9,7 +9,7 @@ use crate::body::{Bodies, BodyKind, Colliders};
 use crate::broad::Broad;
 use crate::geom::{Aabb, Rot, Vec2};
 use crate::motion::Drive;
-use crate::narrow::{Manifold, collide, overlap};
+use crate::narrow::{Manifold, near, overlap};
 use crate::num::{Length, add_sat, cross, dot, mul};
 use crate::shape::Placed;
 
@@ -47,7 +47,7 @@ pub(crate) struct Pair {
     pub(crate) row: u32,
     /// How far they overlap when the tick begins, if they are about to strike; Q32 m.
     pub(crate) depth: i64,
-    /// Whether it met in an impact.
+    /// Whether it met in an impact, or has no rows and overlapped when the tick began.
     pub(crate) met: bool,
     /// C_R and the coefficient of friction of the two, Q48.
     pub(crate) restitution: i64,
@@ -239,10 +239,11 @@ impl Touch {
         let [ga, gb] = [drive.gain(body_a, margins.tick), drive.gain(body_b, margins.tick)];
         let pressed = [0, 1].map(|axis: usize| ga[axis].saturating_sub(gb[axis]).saturating_abs());
         let pressed = pressed[0].saturating_add(pressed[1]) / 2;
-        let limit = margins.base.saturating_add(way(fastest.saturating_add(pressed), margins.tick));
-        let mut manifold = collide(placed_a, placed_b, d, limit);
+        let ahead = way(fastest.saturating_add(pressed), margins.tick);
+        let mut manifold = near(placed_a, placed_b, d, margins.base.saturating_add(ahead))?;
         if manifold.count == 0 {
-            return None;
+            // Corner before corner: rows hold no such pair, so what matters is whether it may meet.
+            return near(placed_a, placed_b, d, ahead);
         }
         if manifold.points[..manifold.count as usize].iter().all(|point| point.separation > margins.base) {
             return Some(Manifold::default());

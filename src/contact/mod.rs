@@ -4,6 +4,6 @@ mod event;
 mod find;
 mod row;
 
-pub use event::{Event, EventKind};
+pub use event::{Collision, Event, EventKind, Pace};
 pub(crate) use find::{Margins, NEW, Pair, Touch};
 pub(crate) use row::{Contact, Contacts};

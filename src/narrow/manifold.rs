@@ -43,8 +43,14 @@ pub(crate) struct Manifold {
 ///
 /// Range: |d| < 2⁵⁰, vertices below 2⁴⁸: differences stay below 2⁵², their products with Q30 normals below 2⁸⁴.
 pub(crate) fn collide(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Manifold {
+    near(a, b, d, limit).unwrap_or_default()
+}
+
+/// The same; none where an axis separates them by more than the limit. Two polygons that are nearer may still have no
+/// points, a corner of one before a corner of the other.
+pub(crate) fn near(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Option<Manifold> {
     if a.count <= 1 && b.count <= 1 {
-        return single(circle::from_circle(a, b, d, limit), true, d);
+        return circle::from_circle(a, b, d, limit).map(|contact| single(contact, true, d));
     }
     // Boxes apart: most pairs of a broad phase with margins end here.
     let apart = |axis: usize| {
@@ -52,20 +58,19 @@ pub(crate) fn collide(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Manifo
             || a.min[axis].wrapping_sub(d[axis]).wrapping_sub(b.max[axis]) > limit
     };
     if apart(0) || apart(1) {
-        return Manifold::default();
+        return None;
     }
     if b.count <= 1 {
-        single(circle::from_polygon(a, b, d, limit), true, d)
+        circle::from_polygon(a, b, d, limit).map(|contact| single(contact, true, d))
     } else if a.count <= 1 {
-        single(circle::from_polygon(b, a, d.map(i64::wrapping_neg), limit), false, d)
+        circle::from_polygon(b, a, d.map(i64::wrapping_neg), limit).map(|contact| single(contact, false, d))
     } else {
-        polygon::collide(a, b, d, limit)
+        polygon::near(a, b, d, limit)
     }
 }
 
 /// A contact with a circle as its owner saw it: `normal` away from the owner, the point from the owner's centre.
-fn single(contact: Option<([i32; 2], Point)>, a_owns: bool, d: [i64; 2]) -> Manifold {
-    let Some((normal, mut point)) = contact else { return Manifold::default() };
+fn single((normal, mut point): ([i32; 2], Point), a_owns: bool, d: [i64; 2]) -> Manifold {
     let normal = if a_owns { normal.map(i32::wrapping_neg) } else { normal };
     if !a_owns {
         point.arm = super::sum(point.arm, d);

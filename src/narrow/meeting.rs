@@ -12,7 +12,9 @@
 //! Turned by half a turn, or with a and b exchanged, a pair has the same times bit by bit, with one exception: two
 //! circles that turn about points beside their centres, exchanged, by a few units.
 
-use super::course::{Course, Line, NEVER};
+use super::clearance::Clearance;
+use super::course::{Course, Line, NEVER, bound};
+use super::inner;
 use super::moment::{Axes, Moment, way};
 use crate::geom::Rot;
 use crate::num::{Angle, TURN_PER_RADIAN_Q64, mul};
@@ -22,7 +24,7 @@ use crate::shape::{Outline, Placed};
 /// of that, for the rounding of what is turned grows with it.
 const TOUCH: i64 = 430 << 6;
 /// 1e-5 m, Q38: that is touching for a pair that has not come to an end in [`PATIENCE`] rounds.
-const NEAR: i64 = 42_950 << 6;
+pub(super) const NEAR: i64 = 42_950 << 6;
 const PATIENCE: u32 = 40;
 /// After so many rounds the present time is the answer, whatever is seen: an impact too many, but nothing is passed.
 /// Usual are one to three, a needle of 2 m at 400 rad/s takes up to nine; what turns by a hundred radians in a tick
@@ -56,6 +58,8 @@ pub(crate) struct Motion {
 /// * Deeper than that along every axis, be it at time 0 or because they closed too slowly to count, they touch no more.
 /// * A pair that stays undecided for [`PATIENCE`] rounds touches at [`NEAR`]; see [`ROUNDS`].
 ///
+/// `clearance` is told how far apart they are when that is looked at first.
+///
 /// Range: vertices to 39 100 m; speeds to 8192 m and 4096 rad a tick, limited beyond; rims to 2184 m a tick, far beyond
 /// which times may be late. Without allocation; 6 ns where boxes around the ways are apart, 0.2 µs where discs are,
 /// else 0.3 µs to 0.6 µs a round.
@@ -66,6 +70,7 @@ pub(crate) fn first_touch(
     until: i64,
     closing: i64,
     slack: i64,
+    clearance: &mut Clearance,
 ) -> Option<i64> {
     let until = until.clamp(0, 1 << 32);
     let reach = a.reach.saturating_add(b.reach);
@@ -81,13 +86,18 @@ pub(crate) fn first_touch(
     let touch = mul(TOUCH, a.reach.max(b.reach).max(4 << 32), 34);
     let mut terms = Terms { touch, tolerance: touch, closing, slack: slack.clamp(0, 1 << 40).wrapping_shl(6) };
     let path = Path::new([a, b], &motion, until);
-    let mut time = path.before([a, b], touch)?;
+    let mut time = path.before([a, b], touch, clearance)?;
     let mut moment = path.at([a, b], time);
     for round in 0..ROUNDS {
         if round == PATIENCE {
             terms.tolerance = terms.tolerance.max(NEAR);
         }
-        match moment.look(&terms) {
+        let mut axes = moment.axes();
+        let (widest, separation) = moment.separation(&mut axes);
+        if round == 0 {
+            *clearance = Clearance::new(&moment, &axes, widest, path.angles(time), path.arms);
+        }
+        match moment.look(&mut axes, separation, &terms) {
             Look::Touch => break,
             Look::Never => return None,
             // Less than a unit of time away.
@@ -102,6 +112,18 @@ pub(crate) fn first_touch(
 }
 
 impl Motion {
+    /// A bound of the speed of points of outlines of these reaches against each other, for the time 0 ..= until; Q40 m per
+    /// tick.
+    pub(crate) fn fastest(&self, reach: [i64; 2], until: i64) -> i64 {
+        let line = bound(self.v).saturating_add(mul(bound(self.a), until, 32));
+        let rim = |body: usize| {
+            let spin = self.omega[body].saturating_abs();
+            let spin = spin.saturating_add(mul(self.alpha[body].saturating_abs(), until, 32));
+            mul(spin, reach[body], 32).saturating_add(1)
+        };
+        line.saturating_add(rim(0)).saturating_add(rim(1)).saturating_add(1)
+    }
+
     /// In limits within which nothing wraps: 8192 m and 4096 rad a tick, and as much a tick².
     fn limited(mut self) -> Motion {
         let limit = |rate: &mut i64, most: i64| *rate = (*rate).clamp(most.wrapping_neg(), most);
@@ -167,16 +189,23 @@ impl Path {
         Path { motion, until, turns, arms, turning }
     }
 
+    /// The angles at a time, Q48 turns.
+    fn angles(&self, time: i64) -> [i64; 2] {
+        let turned = |body: usize| way(self.turns[0][body], self.turns[1][body], time, 32);
+        [0, 1].map(|body| self.motion.angle[body].wrapping_add(turned(body)))
+    }
+
     /// A body's outline at a time.
     fn placed(&self, outline: &Outline, body: usize, time: i64) -> Placed {
-        let turned = way(self.turns[0][body], self.turns[1][body], time, 32);
-        Placed::new(outline, Rot::new(Angle::from_bits(self.motion.angle[body].wrapping_add(turned))))
+        Placed::new(outline, Rot::new(Angle::from_bits(self.angles(time)[body])))
     }
 
     /// A time before which they cannot touch, found from the discs in which outlines turn; none if they never can.
-    fn before(&self, outlines: [&Outline; 2], touch: i64) -> Option<i64> {
+    fn before(&self, outlines: [&Outline; 2], touch: i64, clearance: &mut Clearance) -> Option<i64> {
         let mut time = 0_i64;
-        if self.turning == [false; 2] {
+        let reach = i128::from(outlines[0].reach.saturating_add(outlines[1].reach));
+        let overlap = || inner(self.motion.d, self.motion.d) <= reach.wrapping_mul(reach);
+        if self.turning == [false; 2] || self.turning == [true; 2] && overlap() {
             return Some(time);
         }
         let disc = |body: usize| Placed { count: 1, radius: outlines[body].reach, ..Placed::default() };
@@ -185,12 +214,17 @@ impl Path {
         for _ in 0..2 {
             moment.set(self, time);
             let mut axes = moment.axes();
-            let separation = moment.separation(&mut axes);
+            let (widest, separation) = moment.separation(&mut axes);
             if separation <= touch {
                 break;
             }
             match moment.advance(&mut axes, separation) {
-                NEVER => return None,
+                NEVER => {
+                    // A disc is the same however it turns.
+                    let arms = [0, 1].map(|body: usize| if self.turning[body] { 0 } else { self.arms[body] });
+                    *clearance = Clearance::new(&moment, &axes, widest, self.angles(time), arms);
+                    return None;
+                }
                 step => time = time.saturating_add(step),
             }
         }
@@ -237,11 +271,9 @@ impl Moment {
     }
 
     /// Whether they touch and close; if not, how long they cannot.
-    fn look(&self, terms: &Terms) -> Look {
-        let mut axes = self.axes();
-        let separation = self.separation(&mut axes);
+    fn look(&self, axes: &mut Axes, separation: i64, terms: &Terms) -> Look {
         if separation > terms.tolerance {
-            return match self.advance(&mut axes, separation) {
+            return match self.advance(axes, separation) {
                 NEVER => Look::Never,
                 step => Look::Apart(separation, step),
             };
@@ -253,8 +285,8 @@ impl Moment {
         }
         let mut held = None;
         for index in 0..axes.count {
-            if self.apart(&mut axes, index, deep).is_some() {
-                let Some((line, vertices)) = self.line(&axes, index) else { continue };
+            if self.apart(axes, index, deep).is_some() {
+                let Some((line, vertices)) = self.line(axes, index) else { continue };
                 let wait = self.wait(&line, vertices, terms, band);
                 held = held.max(wait);
             }

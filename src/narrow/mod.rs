@@ -8,9 +8,11 @@
 //! | `overlap` | whether outlines have a point in common |
 //! | `query` | points in outlines, nearest points, rays |
 //! | `meeting`, `moment`, `course` | when two moving outlines first touch |
+//! | `clearance` | that they do not, as far as a gap that is known tells |
 //! | `unit` | directions and lengths without a division |
 
 mod circle;
+mod clearance;
 mod course;
 mod manifold;
 mod meeting;
@@ -22,7 +24,8 @@ mod query;
 mod tests;
 mod unit;
 
-pub(crate) use manifold::{Manifold, Point, collide};
+pub(crate) use clearance::Clearance;
+pub(crate) use manifold::{Manifold, Point, collide, near};
 pub(crate) use meeting::{Motion, first_touch};
 pub(crate) use overlap::overlap;
 pub(crate) use query::{Hit, closest, contains, ray};

@@ -194,14 +194,14 @@ impl Moment {
         axes.nearest[index] = Some(nearest as u8);
     }
 
-    /// How far apart they are, Q38 m: the greatest least height.
-    pub(super) fn separation(&self, axes: &mut Axes) -> i64 {
+    /// How far apart they are, Q38 m, the greatest least height, and the axis of it.
+    pub(super) fn separation(&self, axes: &mut Axes) -> (usize, i64) {
         let first = (0..axes.count).max_by_key(|&index| axes.limits[index]).unwrap_or(0);
-        let mut greatest = self.apart(axes, first, i64::MIN).unwrap_or(i64::MIN);
+        let mut widest = (first, self.apart(axes, first, i64::MIN).unwrap_or(i64::MIN));
         for index in 0..axes.count {
-            greatest = self.apart(axes, index, greatest).unwrap_or(greatest);
+            widest = self.apart(axes, index, widest.1).map_or(widest, |separation| (index, separation));
         }
-        greatest
+        widest
     }
 }
 

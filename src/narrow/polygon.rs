@@ -184,16 +184,16 @@ pub(super) fn between(a: i64, b: i64, part: i64, whole: i64) -> i64 {
     a.wrapping_add(share)
 }
 
-pub(super) fn collide(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Manifold {
+pub(super) fn near(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Option<Manifold> {
     let views = [View { own: a, other: b, shift: d }, View { own: b, other: a, shift: d.map(i64::wrapping_neg) }];
-    let Some(of_a) = views[0].greatest(limit) else { return Manifold::default() };
-    let Some(of_b) = views[1].greatest(limit) else { return Manifold::default() };
+    let of_a = views[0].greatest(limit)?;
+    let of_b = views[1].greatest(limit)?;
     // In a tie a's.
     let owner = usize::from(of_b.separation > of_a.separation);
     let face = if owner == 0 { of_a } else { of_b };
     let clip = views[owner].clip(face, false);
     let manifold = manifold(&views, owner, face.edge, &clip, d, limit);
-    if manifold.count > 0 { manifold } else { otherwise(&views, owner, face, clip.found, d, limit) }
+    Some(if manifold.count > 0 { manifold } else { otherwise(&views, owner, face, clip.found, d, limit) })
 }
 
 /// The points of a clip that are within the limit.

@@ -4,7 +4,7 @@
 use super::Decimal;
 use super::quantity::{
     Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Density, Energy, Force, Friction, Impulse, Inertia,
-    Length, Mass, Mu, NumError, Quantity, Radians, RangeError, Restitution, Torque, Velocity,
+    Length, Mass, Mu, NumError, Quantity, Radians, RangeError, Restitution, Time, Torque, Velocity,
 };
 use crate::geom::{Rot, Vec2};
 use fixed::FixedI128;
@@ -72,7 +72,7 @@ fn fixed_checked<F: fixed::traits::Fixed>(value: f64) -> Option<F> {
 
 float! {
     Acceleration Angle AngularImpulse AngularVelocity Damping Density Energy Force Friction Impulse Inertia Length Mass Mu
-    Radians Restitution Torque Velocity
+    Radians Restitution Time Torque Velocity
 }
 
 impl<Q: FromF64> Vec2<Q> {

@@ -10,6 +10,7 @@
 //! | [`Acceleration`] | `I16F48` | m/s² | ±(32 768 − 2⁻⁴⁸) | 3.6e-15 |
 //! | [`Angle`] | `I16F48` | turns | ±(32 768 − 2⁻⁴⁸) | 3.6e-15 (2.2e-14 rad) |
 //! | [`Radians`] | `I16F48` | rad | ±(32 768 − 2⁻⁴⁸) | 3.6e-15 |
+//! | [`Time`] | `I16F48` | s | an output | 3.6e-15 |
 //! | [`Mass`] | `I64F64` | kg | 1e-6 … 2.1e9 | 5.4e-20 |
 //! | [`Inertia`] | `I64F64` | kg m² | 1e-12 … 1e18 | 5.4e-20 |
 //! | [`Force`] | `I64F64` | N | ±1e14 | 5.4e-20 |
@@ -54,7 +55,7 @@ pub use decimal::Decimal;
 pub use float::FromF64;
 pub use quantity::{
     Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Density, Energy, Force, Friction, Impulse, Inertia,
-    Length, Mass, Mu, NumError, Quantity, Radians, RangeError, Restitution, Torque, Velocity,
+    Length, Mass, Mu, NumError, Quantity, Radians, RangeError, Restitution, Time, Torque, Velocity,
 };
 pub use root::{hypot, sqrt};
 pub use round::{add_sat, clamp_i64, cross, div, dot, mul, mul_add, round_shift};

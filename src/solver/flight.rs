@@ -44,8 +44,11 @@ pub(crate) struct Flight {
     pub(crate) weight: [i64; 2],
     /// The first of the pairs in which it may be struck, or [`NONE`].
     pub(crate) first: u32,
-    /// How often it was struck in this tick.
+    /// How often it was struck in this tick, and a box around its way since then.
     pub(crate) strikes: u32,
+    pub(crate) around: Aabb,
+    /// Whether the last answer that it took part in changed its velocities.
+    pub(crate) changed: bool,
     /// Rows push it: its way is known to the end of the substep only.
     pub(crate) pushed: bool,
 }
@@ -70,11 +73,11 @@ impl Flight {
         }
     }
 
-    /// The box around its way from a time on, for a body of this reach.
-    pub(crate) fn around(&self, time: i64, reach: i64, scales: &Scales) -> Aabb {
-        let (from, to) = (self.at(time, scales), self.at(TICK, scales));
+    /// Notes the box around its way, for a body of this reach.
+    pub(crate) fn surround(&mut self, reach: i64, scales: &Scales) {
+        let (from, to) = (&self.state, self.at(TICK, scales));
         // A parabola lies within the triangle of its ends and where its first velocity leads in half of the time.
-        let half = TICK.saturating_sub(time) / 2;
+        let half = TICK.saturating_sub(self.time) / 2;
         let bound = |axis: usize| {
             let ahead = mul(mul(from.v[axis], scales.margins.tick, 71), half, 40).saturating_add(from.x[axis]);
             let (a, b) = (from.x[axis], to.x[axis]);
@@ -82,7 +85,7 @@ impl Flight {
             (out(a.min(b).min(ahead), reach.saturating_neg()), out(a.max(b).max(ahead), reach))
         };
         let [(left, right), (low, high)] = [bound(0), bound(1)];
-        Aabb { min: Vec2::new(left, low), max: Vec2::new(right, high) }
+        self.around = Aabb { min: Vec2::new(left, low), max: Vec2::new(right, high) };
     }
 }
 
@@ -140,6 +143,11 @@ impl Flights {
         }
         self.places.resize(slots, 0);
         self.list.clear();
+    }
+
+    /// A body's flight, if it has one.
+    pub(crate) fn known(&self, slot: usize) -> Option<&Flight> {
+        self.list.get(self.places[slot].checked_sub(1)? as usize)
     }
 
     /// The place of a body's flight, which begins as its free motion: from `past` to what `bodies` are now.

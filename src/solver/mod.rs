@@ -15,7 +15,7 @@ mod strike;
 mod timeline;
 
 use crate::body::{Bodies, Colliders};
-use crate::contact::{Contact, Contacts, NEW, Pair, Touch};
+use crate::contact::{Collision, Contact, Contacts, NEW, Pair, Touch};
 use crate::motion::{Drive, Fault};
 use crate::num::{cross, dot, mul};
 use color::Colors;
@@ -91,8 +91,9 @@ impl Solver {
         for &at in &*fast {
             let pair = &mut touch.pairs[at as usize];
             let points = &pair.manifold.points[..pair.manifold.count as usize];
-            let deepest = points.iter().fold(0, |depth: i64, point| depth.max(point.separation.saturating_neg()));
-            pair.depth = deepest.saturating_add(ROUNDING);
+            let deepest = points.iter().map(|point| point.separation.saturating_neg()).max();
+            pair.met = deepest.is_some_and(|depth| depth >= 0);
+            pair.depth = deepest.unwrap_or(0).max(0).saturating_add(ROUNDING);
             pair.manifold.count = 0;
         }
         for pair in touch.pairs.iter_mut().filter(|pair| pair.manifold.count > 0) {
@@ -132,7 +133,7 @@ impl Solver {
         faults: &mut Vec<Fault>,
     ) {
         let Solver { mobilities, scales, movers, before, places, fast, timeline, colors, blocks, .. } = self;
-        let stage = Stage { bodies, colliders, touch, drive, mobilities, scales };
+        let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[] };
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
         }
@@ -149,7 +150,7 @@ impl Solver {
                     block.solve::<true>(u8::MAX, &mut movers.lanes, scales);
                 }
                 movers.drift(scales);
-                timeline.run(scales.span(substep), &stage, movers, faults);
+                timeline.run(scales.span(substep), &Stage { blocks, ..stage }, movers, faults);
                 let all = substep % RELAX == 0 || substep == scales.substeps;
                 for block in blocks.iter_mut().filter(|block| all || block.pushes != 0) {
                     let lanes = if all { u8::MAX } else { block.pushes };
@@ -169,6 +170,11 @@ impl Solver {
             touch.pairs[pair as usize].met = true;
         }
         touch.join(&mut timeline.late, colliders, contacts);
+    }
+
+    /// The collisions of the tick.
+    pub(crate) fn collisions(&self) -> &[Collision] {
+        &self.timeline.collisions
     }
 
     /// What became of a contact, for the next tick.
@@ -202,18 +208,20 @@ fn strikes(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scales, among: 
     let between = [between(bodies.x.bits()), between(bodies.y.bits())];
     let press = gain.map(|gain| dot(gain, n, 30));
     let mut closest = i64::MAX;
-    let mut approach = 0;
+    let mut slowest = i64::MAX;
     for point in &pair.manifold.points[..pair.manifold.count as usize] {
         let other = [point.arm[0].saturating_sub(between[0]), point.arm[1].saturating_sub(between[1])];
         let turning = |omega: i64, arm: [i64; 2]| mul(omega, cross(arm, n, 30), 32);
         let speed = dot(v, n, 30).saturating_add(turning(omega[0], point.arm)).saturating_sub(turning(omega[1], other));
         closest = closest.min(point.separation);
-        approach = approach.min(speed);
+        slowest = slowest.min(speed);
     }
-    let approach = approach.saturating_neg();
     let weight = press[0].saturating_abs().max(press[1].saturating_abs());
     let threshold = scales.threshold(pair.restitution, weight, among);
     // Across a gap forces make it faster; what rests is pressed by them and does not strike.
-    let press = if closest > scales.touching { press[1].saturating_sub(press[0]).max(0) } else { 0 };
-    approach.saturating_add(press) > threshold && closest > scales.slack.saturating_neg()
+    let (gap, pressed) = (closest > scales.touching, press[1].saturating_sub(press[0]).max(0));
+    let fast = slowest.min(0).saturating_neg().saturating_add(if gap { pressed } else { 0 }) > threshold;
+    // What parts needs no row in this tick, which would stop what turns it about, or another corner that swings in.
+    let parts = slowest.saturating_sub(pressed) > scales.parting(pair.restitution, gap, threshold, weight);
+    (fast || parts) && closest > scales.slack.saturating_neg()
 }

@@ -184,6 +184,11 @@ impl Block {
         }
     }
 
+    /// Whether a contact bears a load.
+    pub(crate) fn bears(&self, i: usize) -> bool {
+        self.points[0].impulse[i] > 0 || self.points[1].impulse[i] > 0
+    }
+
     /// Whether a contact pushed in this tick.
     pub(crate) fn spent(&self, i: usize) -> bool {
         self.peak[0][i] > 0 || self.peak[1][i] > 0

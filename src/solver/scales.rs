@@ -1,7 +1,7 @@
 //! The constants of a world's contact solver.
 
 use crate::contact::Margins;
-use crate::num::{TURN_PER_RADIAN_Q64, div, round_shift};
+use crate::num::{TURN_PER_RADIAN_Q64, Time, div, mul, round_shift};
 
 /// Softness: a contact is a spring and damper of this frequency, as a part of the substep rate, and of this damping
 /// ratio; then nothing depends on the rate. Of it follow, with x = 2π·c and a = 2ζ + x:
@@ -106,13 +106,40 @@ impl Scales {
         if among { fast.max(press.saturating_mul(4)) } else { fast }
     }
 
-    /// The least speed of approach at which what was taken from the rows is answered as an impact, Q48 m/s; `held`: rows
-    /// have the pair too, and take what is slower.
-    pub(crate) fn least_strike(&self, restitution: i64, held: bool) -> i64 {
+    /// The least speed of approach at which what was taken from the rows is answered as an impact, Q48 m/s; `borne`: rows
+    /// bear a load there, and take what is slower.
+    pub(crate) fn least_strike(&self, restitution: i64, borne: bool) -> i64 {
         if restitution >= SPEED {
             return SPEED / 1_000_000;
         }
-        (if held { SPEED / 2 } else { SPEED / 100 }) << self.shift
+        let least = match (borne, restitution > 0) {
+            (true, false) => SPEED * 8,
+            (true, true) => SPEED * 2,
+            (false, false) => SPEED / 2,
+            (false, true) => SPEED / 100,
+        };
+        least << self.shift
+    }
+
+    /// The speed beyond which a near pair parts, Q48 m/s: slower ones may be at rest, unless they bounce off everything.
+    /// In a pile much parts slowly, and comes to rest only if rows have it. `threshold`, `press`: as above.
+    pub(crate) fn parting(&self, restitution: i64, gap: bool, threshold: i64, press: i64) -> i64 {
+        match (restitution >= SPEED, gap) {
+            (true, true) => -1,
+            (true, false) => (SPEED / 100) << self.shift,
+            (false, _) if press == 0 => threshold,
+            (false, _) => SPEED << self.shift,
+        }
+    }
+
+    /// How fast contacts separate that are at rest all the same, Q48 m/s: 1 mm/s.
+    pub(crate) fn still(&self) -> i64 {
+        (SPEED / 1000) << self.shift
+    }
+
+    /// A part of the tick in seconds.
+    pub(crate) fn time(&self, part: i64) -> Time {
+        Time::from_bits(mul(part, self.margins.tick, 47))
     }
 
     /// The same for what came to rest in this tick: 0.1 m/s, 2 mm until the rows have it.

@@ -11,14 +11,16 @@
 //! | κ | Q48 | 120² + 1 < 2¹⁴: a body's gyration is at least 1/120 of its reach |
 
 use super::mobility::Mobility;
+use crate::geom::Vec2;
 use crate::narrow::Manifold;
-use crate::num::{div, dot, mul};
+use crate::num::{Impulse, Length, Mass, Quantity, div, dot, mul, mul_div};
 
 /// The velocities of a body: x, y and w.
 pub(crate) type Speed = [i64; 3];
 
 const LIMIT: i64 = 1 << 61;
-/// How often contacts are gone through at most until none changes.
+/// How often contacts are gone through at most, until no impulse changes any more; where nothing bounces, by no more than
+/// a millionth of the fastest approach.
 const ROUNDS: u32 = 64;
 
 fn bounded(v: i64) -> i64 {
@@ -34,6 +36,9 @@ struct Row {
     arm: [i64; 2],
     /// p·τ·α of a and of b.
     turn: [i64; 2],
+    /// What an impulse of it adds to its own speed, κ, and 1/κ, Q62.
+    kappa: i64,
+    inverse: i64,
     /// The speed that it is to have.
     target: i64,
     /// The impulse, accumulated.
@@ -61,14 +66,17 @@ pub(crate) struct Strike {
     pub(crate) bodies: [usize; 2],
     share: [i64; 2],
     count: usize,
+    /// From a's centre to the points, Q32.
+    arms: [[i64; 2]; 2],
     points: [Row; 2],
     /// At the first point, along the normal turned counter-clockwise: both points slide alike.
     friction: Row,
     /// μ, Q48.
     rough: i64,
-    /// The inverse of the matrix that takes impulses at both points to their speeds, Q48: of equal diagonal order, with
-    /// the other element; zero where a single point says all.
-    inverse: Option<[i64; 3]>,
+    /// What an impulse at one point adds to the speed of the other, Q48.
+    couple: i64,
+    /// Of the matrix that takes impulses at both points to their speeds; none where a single point says all.
+    determinant: Option<i128>,
 }
 
 impl Strike {
@@ -85,6 +93,7 @@ impl Strike {
             bodies,
             share: [first, second],
             count: manifold.count as usize,
+            arms: [0, 1].map(|at: usize| manifold.points[at].arm),
             rough: friction,
             ..Strike::default()
         };
@@ -101,49 +110,28 @@ impl Strike {
                 let lever = mul(strike.share[body], mobility[body].tau_fine, 48);
                 mul(lever, arm[body], 48)
             });
-            Row { along, arm, turn, ..Row::default() }
+            let line = strike.share[0].saturating_add(strike.share[1]);
+            let mut row = Row { along, arm, turn, ..Row::default() };
+            row.kappa = line.saturating_add(row.turned_by(&row));
+            row.inverse = div(1 << 110, row.kappa.into()) as i64;
+            row
         };
         let points = [0, 1].map(|at: usize| row(n, manifold.points[at].arm));
         (strike.points, strike.friction) = (points, row(t, manifold.points[0].arm));
-        strike.inverse = strike.invert();
+        let line = strike.share[0].saturating_add(strike.share[1]);
+        strike.couple = line.saturating_add(strike.points[0].turned_by(&strike.points[1]));
+        strike.determinant = strike.determinant();
         strike
     }
 
-    /// κ of a row: what an impulse of it adds to its own speed.
-    fn kappa(&self, row: &Row) -> i64 {
-        let line = self.share[0].saturating_add(self.share[1]);
-        line.saturating_add(row.turned_by(row))
-    }
-
-    fn cross_term(&self) -> i64 {
-        let line = self.share[0].saturating_add(self.share[1]);
-        line.saturating_add(self.points[0].turned_by(&self.points[1]))
-    }
-
-    /// The inverse of the two points' matrix; none for one point, or if its rows say nearly the same.
-    fn invert(&self) -> Option<[i64; 3]> {
+    /// The determinant of the two points' matrix, Q96; none for one point, or if its rows say nearly the same.
+    fn determinant(&self) -> Option<i128> {
         if self.count < 2 {
             return None;
         }
-        let [a, b] = [self.kappa(&self.points[0]), self.kappa(&self.points[1])];
-        let c = self.cross_term();
-        let product = |x: i64, y: i64| i128::from(x).saturating_mul(y.into());
-        let determinant = product(a, b).saturating_sub(product(c, c));
-        if determinant <= product(a, b) >> 30 {
-            return None;
-        }
-        // det is Q96; of an element over it the quotient has 64 − e more fraction bits than Q48 − Q96 + 64.
-        let down = 65u32.saturating_sub(determinant.leading_zeros());
-        let over = |element: i64| {
-            let quotient = div(i128::from(element) << 64, determinant >> down);
-            let shift = i64::from(32u32).saturating_sub(down.into());
-            crate::num::clamp_i64(if shift >= 0 {
-                quotient << shift.min(60)
-            } else {
-                quotient >> shift.unsigned_abs().min(120)
-            })
-        };
-        Some([over(b), over(c).saturating_neg(), over(a)])
+        let [a, b] = self.points.map(|row| row.kappa);
+        let determinant = product(a, b).saturating_sub(product(self.couple, self.couple));
+        (determinant > product(a, b) >> 30).then_some(determinant)
     }
 
     /// The fastest approach of its points, not positive.
@@ -153,11 +141,58 @@ impl Strike {
     }
 
     /// Sets the speeds with which the points are to separate: C_R (Q48) times those with which they approach.
+    ///
+    /// Of two points of which one parts, that one takes no part in a bounce: what the other does to it would be an impulse
+    /// along a speed, and add energy. If it closes then, it is met again.
     pub(crate) fn aim(&mut self, speeds: &[Speed], restitution: i64) {
         let [a, b] = self.bodies.map(|at| speeds[at]);
+        let parts = [0, 1].map(|at: usize| self.points[at].speed(&a, &b) >= 0);
+        if restitution > 0 && self.count == 2 && parts[0] != parts[1] {
+            if parts[0] {
+                self.points.swap(0, 1);
+                self.arms.swap(0, 1);
+            }
+            (self.count, self.determinant) = (1, None);
+        }
         for row in &mut self.points {
             row.target = mul(row.speed(&a, &b).min(0), restitution, 48).saturating_neg();
         }
+    }
+
+    /// How fast its points separate, the fastest of them.
+    pub(crate) fn parting(&self, speeds: &[Speed]) -> i64 {
+        let [a, b] = self.bodies.map(|at| speeds[at]);
+        self.points[..self.count].iter().map(|row| row.speed(&a, &b)).max().unwrap_or(0)
+    }
+
+    /// The direction from b to a, Q30.
+    pub(crate) fn normal(&self) -> [i32; 2] {
+        self.points[0].along.map(|n| n as i32)
+    }
+
+    /// The point at which one impulse would do what those of both points do; `from`: a's centre.
+    pub(crate) fn center(&self, from: [i64; 2]) -> Vec2<Length> {
+        let [first, second] = [0, 1].map(|at: usize| i128::from(self.points[at].impulse));
+        let at = [0, 1].map(|axis: usize| {
+            let [p, q] = self.arms.map(|arm| i128::from(arm[axis]));
+            let part = div(q.saturating_sub(p).saturating_mul(second), first.saturating_add(second)) as i64;
+            Length::from_bits(from[axis].saturating_add(self.arms[0][axis]).saturating_add(part))
+        });
+        Vec2::new(at[0], at[1])
+    }
+
+    /// What a gets, from the masses of both bodies: λ = μ·p·m, of the body whose share p is greater.
+    pub(crate) fn impulse_on_a(&self, masses: [Mass; 2], shift: u32) -> Vec2<Impulse> {
+        let heavy = usize::from(self.share[1] > self.share[0]);
+        let [load, slide] = self.impulse();
+        let [n, t] = [self.points[0].along, self.friction.along];
+        let along = |axis: usize| {
+            let speed = dot([load, slide], [n[axis], t[axis]], 30);
+            let part = i128::from(mul(speed, self.share[heavy], 48)) << shift;
+            let bits = mul_div(part, masses[heavy].to_bits(), 1 << 48);
+            Impulse::from_bits(bits.clamp(Impulse::MIN.to_bits(), Impulse::MAX.to_bits()))
+        };
+        Vec2::new(along(0), along(1))
     }
 
     /// The impulse of both points along the normal, and that of friction.
@@ -196,7 +231,7 @@ impl Strike {
             let [load, _] = self.impulse();
             let most = mul(load, self.rough, 48);
             let slip = self.friction.speed(&a, &b);
-            let change = crate::num::clamp_i64(div(i128::from(slip) << 48, self.kappa(&self.friction).into()));
+            let change = mul(slip, self.friction.inverse, 62);
             let impulse = self.friction.impulse.saturating_sub(change).clamp(most.saturating_neg(), most);
             let change = impulse.saturating_sub(self.friction.impulse);
             self.friction.impulse = impulse;
@@ -217,33 +252,46 @@ impl Strike {
         let [a, b] = self.bodies.map(|at| speeds[at]);
         let want = [0, 1].map(|at: usize| self.points[at].target.saturating_sub(self.points[at].speed(&a, &b)));
         let least = [0, 1].map(|at: usize| self.points[at].impulse.saturating_neg());
-        let alone = |at: usize, want: i64| {
-            let kappa = self.kappa(&self.points[at]);
-            crate::num::clamp_i64(div(i128::from(want) << 48, kappa.into())).max(least[at])
-        };
-        let Some([k00, k01, k11]) = self.inverse else {
+        let alone = |at: usize, want: i64| mul(want, self.points[at].inverse, 62).max(least[at]);
+        let Some(determinant) = self.determinant else {
             // One point, or two that are nearly the same: the one that wants more.
             let deeper = usize::from(self.count > 1 && want[1] > want[0]);
             let mut change = [0; 2];
             change[deeper] = alone(deeper, want[deeper]);
             return change;
         };
-        let both = [
-            mul(k00, want[0], 48).saturating_add(mul(k01, want[1], 48)),
-            mul(k01, want[0], 48).saturating_add(mul(k11, want[1], 48)),
-        ];
-        match [both[0] < least[0], both[1] < least[1]] {
-            [false, false] => both,
-            [first, _] => {
-                // That one gives back what it has, and the other is alone; if then it wants after all, the next round sees.
-                let (held, free) = if first { (0, 1) } else { (1, 0) };
-                let mut change = [0; 2];
-                change[held] = least[held];
-                change[free] = alone(free, want[free].saturating_sub(mul(self.cross_term(), least[held], 48)));
-                change
-            }
+        let both = [0, 1].map(|at: usize| {
+            let other = 1 ^ at;
+            let change = product(self.points[other].kappa, want[at]).saturating_sub(product(self.couple, want[other]));
+            over(change, determinant)
+        });
+        if both[0] >= least[0] && both[1] >= least[1] {
+            return both;
         }
+        // One point gives back what it has, and the other answers alone: right if the first then separates by itself.
+        let single = |free: usize| {
+            let held = 1 ^ free;
+            let mut change = least;
+            change[free] = alone(free, want[free].saturating_sub(mul(self.couple, least[held], 48)));
+            let own = mul(self.points[held].kappa, least[held], 48);
+            let speed = own.saturating_add(mul(self.couple, change[free], 48));
+            (change, speed.saturating_sub(want[held]))
+        };
+        let [(first, second_parts), (second, first_parts)] = [single(0), single(1)];
+        if second_parts >= first_parts { first } else { second }
     }
+}
+
+/// Q96 from two of Q48.
+fn product(a: i64, b: i64) -> i128 {
+    i128::from(a).saturating_mul(b.into())
+}
+
+/// The quotient of two numbers in Q96, Q48. Both are shortened by what does not fit: the divisor has 66 bits at least, so
+/// it keeps 44, and what is wrong by that the next round sees.
+fn over(value: i128, by: i128) -> i64 {
+    let up = value.unsigned_abs().leading_zeros().saturating_sub(1).min(48);
+    crate::num::clamp_i64(div(value << up, by >> 48u32.saturating_sub(up)))
 }
 
 /// An impulse of a row to both bodies.
@@ -269,6 +317,9 @@ fn give(bodies: [usize; 2], share: [i64; 2], row: &Row, impulse: i64, speeds: &m
 pub(crate) fn solve(strikes: &mut [Strike], restitutions: &[i64], speeds: &mut [Speed], before: &mut Vec<Speed>) {
     before.clear();
     before.extend_from_slice(speeds);
+    let bounces = restitutions.iter().any(|&restitution| restitution > 0);
+    let approach = strikes.iter().fold(0, |least, strike| strike.approach(speeds).min(least));
+    let enough = if bounces { 1 } else { (approach.saturating_neg() >> 20).max(1) };
     for attempt in 0..3 {
         for (strike, &restitution) in strikes.iter_mut().zip(restitutions) {
             strike.forget();
@@ -277,7 +328,7 @@ pub(crate) fn solve(strikes: &mut [Strike], restitutions: &[i64], speeds: &mut [
         }
         for _ in 0..ROUNDS {
             let sweep = strikes.iter_mut().map(|strike| strike.sweep(speeds));
-            if sweep.fold(0, i64::max) <= 1 {
+            if sweep.fold(0, i64::max) <= enough {
                 break;
             }
         }

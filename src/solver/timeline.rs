@@ -9,21 +9,24 @@
 
 mod answer;
 
-use super::flight::{Flights, NONE, Past, State, TICK, motion};
+use super::flight::{Flight, Flights, NONE, Past, State, TICK, motion};
 use super::mobility::Mobility;
 use super::mover::Movers;
+use super::rows::{Block, LANES};
 use super::scales::Scales;
 use super::strike::{Speed, Strike};
 use crate::body::{Bodies, Colliders};
-use crate::contact::Touch;
+use crate::contact::{Collision, Touch};
+use crate::geom::Aabb;
 use crate::motion::{Drive, Fault};
-use crate::narrow::first_touch;
+use crate::narrow::{Clearance, first_touch};
 use crate::num::{lane::next, mul};
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Impacts within this of each other are one: 1 ns at 60 ticks/s, Q32 of a tick.
-const SAME: i64 = 256;
+/// Impacts within this of each other are one: 16 ns at 60 ticks/s, Q32 of a tick. Positions are rounded every tick, and
+/// two bodies that come to a third alike differ by 1 ns after some ticks.
+const SAME: i64 = 1 << 12;
 /// How far the surfaces of an impact are apart at most: 0.2 µm, Q32 m; for bodies over 4 m more, as `first_touch` has it.
 const REACH: i64 = 860;
 /// Of two points, one that is farther out than the other by more than this takes no part: 15 µm. What lands flatter than
@@ -32,6 +35,9 @@ const FLAT: i64 = 1 << 16;
 /// How often a body is struck in a tick before its impacts take all speed out of it, and how often at all.
 const MANY: u32 = 256;
 const MOST: u32 = 320;
+/// How often a pair is answered in a tick before what comes together slowly is left to rows, twice as fast each time: what
+/// rolls on another closes again and again. Not what is elastic.
+const OFTEN: u32 = 8;
 /// Contacts that rows hold are struck on so often only, unless they are elastic: then rows have them back.
 const PASSED_ON: u32 = 8;
 
@@ -49,6 +55,8 @@ struct Engaged {
     pair: u32,
     /// Whether it has rows.
     held: bool,
+    /// How often it was answered.
+    answers: u32,
     /// How far they may overlap already, Q32 m.
     depth: i64,
     /// The least speed of approach that is answered, Q48 m/s.
@@ -56,6 +64,10 @@ struct Engaged {
     /// C_R and the coefficient of friction, Q48.
     restitution: i64,
     friction: i64,
+    /// What was seen of it.
+    clearance: Clearance,
+    /// Whether an impact of this tick brought it to rest.
+    rests: bool,
 }
 
 /// C_R = 1.
@@ -74,6 +86,17 @@ pub(crate) struct Stage<'s> {
     pub(crate) drive: &'s Drive,
     pub(crate) mobilities: &'s [Mobility],
     pub(crate) scales: &'s Scales,
+    pub(crate) seats: &'s [u32],
+    pub(crate) blocks: &'s [Block],
+}
+
+impl Stage<'_> {
+    /// Whether the rows of a pair bear a load now.
+    fn bears(&self, pair: u32) -> bool {
+        let row = self.touch.pairs.get(pair as usize).map_or(NONE, |pair| pair.row);
+        let seat = self.seats.get(row as usize).map(|&seat| seat as usize);
+        seat.is_some_and(|seat| self.blocks[seat / LANES].bears(seat % LANES))
+    }
 }
 
 /// The impacts of a tick. Nothing in it lasts.
@@ -91,16 +114,20 @@ pub(crate) struct Timeline {
     pub(crate) late: Vec<[[u32; 2]; 2]>,
     /// Places of those of the tick that met.
     pub(crate) met: Vec<u32>,
-    // Space for one answer.
+    /// What happened, and how many answers there were.
+    pub(crate) collisions: Vec<Collision>,
+    order: u32,
+    // Space for one answer: pairs that meet; places of their flights, how fast these are, and were; contacts.
     group: Vec<u32>,
     locals: Vec<u32>,
     speeds: Vec<Speed>,
     before: Vec<Speed>,
+    priors: Vec<State>,
+    members: Vec<u32>,
     strikes: Vec<Strike>,
     restitutions: Vec<i64>,
-    members: Vec<u32>,
     found: Vec<u32>,
-    settled: Vec<u32>,
+    known: Vec<[u32; 2]>,
 }
 
 impl Timeline {
@@ -112,6 +139,8 @@ impl Timeline {
         self.struck.clear();
         self.late.clear();
         self.met.clear();
+        self.collisions.clear();
+        self.order = 0;
     }
 
     /// While bodies are where the tick begins, and some pair may meet in it.
@@ -142,7 +171,7 @@ impl Timeline {
         let friction = a.friction.combine(b.friction).to_bits();
         let list = &mut self.flights.list;
         let next = flights.map(|place| core::mem::replace(&mut list[place as usize].first, at as u32));
-        let least = stage.scales.least_strike(restitution, held);
+        let least = stage.scales.least_strike(restitution, held && stage.bears(pair));
         let depth = stage.touch.pairs.get(pair as usize).map_or(0, |pair| pair.depth);
         self.engaged.push(Engaged {
             colliders,
@@ -151,10 +180,13 @@ impl Timeline {
             next,
             pair,
             held,
+            answers: 0,
             depth,
             least,
             restitution,
             friction,
+            clearance: Clearance::default(),
+            rests: false,
         });
         at
     }
@@ -176,11 +208,16 @@ impl Timeline {
         }
         let (p, q) = (a.at(from, scales), b.at(from, scales));
         let motion = motion(&p, &q, [&a.gain, &b.gain], scales);
-        let outlines = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
+        let rest = until.saturating_sub(from);
         let closing = mul(pair.least, scales.margins.tick, 71);
+        let [one, other] = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
+        if motion.fastest([one.reach, other.reach], rest) < closing || pair.clearance.lasts(&motion, rest) {
+            return;
+        }
         let slack = if a.place != 0 || b.place != 0 { scales.slack } else { pair.depth };
-        if let Some(after) = first_touch(outlines[0], outlines[1], &motion, until.saturating_sub(from), closing, slack)
-        {
+        // What closes so slowly that it is let, is not so deep when it closes faster that it is lost.
+        let slack = slack.max(mul(pair.least, scales.margins.tick, 78));
+        if let Some(after) = first_touch(one, other, &motion, rest, closing, slack, &mut pair.clearance) {
             let time = from.saturating_add(after);
             pair.time = time;
             self.queue.push(Reverse((time, pair.colliders[0], pair.colliders[1], at as u32)));
@@ -227,6 +264,9 @@ impl Timeline {
             let begin = self.past.state(slot);
             flight.state = movers.state(flight.place, &begin, &stage.mobilities[slot], stage.scales);
             (flight.time, flight.gain, flight.pushed) = (self.from, [0; 3], true);
+            if flight.strikes > 0 {
+                flight.surround(stage.mobilities[slot].reach, stage.scales);
+            }
         }
         pushed
     }
@@ -292,61 +332,74 @@ impl Timeline {
         self.group.sort_unstable_by_key(|&at| engaged[at as usize].colliders);
     }
 
-    /// A body that was struck goes another way: whom it may meet there.
+    /// A body that was struck goes another way: whom it may meet there. `around`: a box about that.
     fn meet_again(&mut self, place: usize, time: i64, to: i64, stage: &Stage<'_>, movers: &Movers) {
-        let Stage { bodies, colliders, touch, drive, mobilities, scales } = *stage;
-        let flight = self.flights.list[place];
-        let slot = flight.slot as usize;
-        let around = flight.around(time, mobilities[slot].reach, scales);
-        let mut found = core::mem::take(&mut self.found);
+        let Stage { bodies, colliders, touch, .. } = *stage;
+        let Flight { slot, around, .. } = self.flights.list[place];
+        let (mut found, mut known) = (core::mem::take(&mut self.found), core::mem::take(&mut self.known));
         found.clear();
         touch.around(&around, |collider| found.push(collider));
         for &other in &self.struck {
-            let body = self.flights.list[other as usize].slot as usize;
-            found.extend(colliders.list(bodies.cold.value(body).first).map(|at| at as u32));
+            let Flight { slot, around: other, .. } = self.flights.list[other as usize];
+            if other.overlaps(&around) {
+                found.extend(colliders.list(bodies.cold.value(slot as usize).first).map(|at| at as u32));
+            }
         }
         found.sort_unstable();
         found.dedup();
-        for own in colliders.list(bodies.cold.value(slot).first) {
+        self.pairs_of(place, &mut known);
+        for own in colliders.list(bodies.cold.value(slot as usize).first) {
             for &other in &found {
                 let (a, b) = (other.min(own as u32), other.max(own as u32));
-                if a == b || !touch.may_strike([a, b], bodies, colliders) || self.knows(place, [a, b]) {
+                // Exactly, so that what the broad phase hands out besides has no say.
+                if a == b || !self.way(other, stage).overlaps(&around) || known.contains(&[a, b]) {
                     continue;
                 }
-                // Exactly, so that what the broad phase hands out besides has no say.
-                let body = colliders.rows.value(other as usize).body;
-                let at = self.flight(body, stage, movers);
-                let flight = &self.flights.list[at as usize];
-                let way = if flight.strikes > 0 {
-                    flight.around(time.max(flight.time), mobilities[body as usize].reach, scales)
-                } else {
-                    let State { x, v, .. } = self.past.state(body as usize);
-                    touch.way(other as usize, x, v, drive.gain(body as usize, scales.margins.tick), scales.margins)
-                };
-                if way.overlaps(&around) {
-                    let of = [a, b].map(|at| colliders.rows.value(at as usize).body);
-                    let (pair, held) = touch.pair_of([a, b]);
-                    if held && touch.pairs[pair as usize].restitution == 0 {
-                        continue;
-                    }
+                let (pair, held) = touch.pair_of([a, b]);
+                let of = [a, b].map(|at| colliders.rows.value(at as usize).body);
+                if !(held && self.is_slow(of, pair, stage)) && touch.may_strike([a, b], bodies, colliders) {
                     self.add([a, b], of, pair, held, stage, movers);
                 }
             }
         }
-        self.found = found;
+        (self.found, self.known) = (found, known);
         self.look_again(place, time, to, stage, true);
     }
 
-    /// Whether two colliders, one of this body, are engaged already.
-    fn knows(&self, place: usize, colliders: [u32; 2]) -> bool {
+    /// Whether bodies with rows are so slow that these take whatever comes together.
+    fn is_slow(&self, bodies: [u32; 2], pair: u32, stage: &Stage<'_>) -> bool {
+        let restitution = stage.touch.pairs[pair as usize].restitution;
+        let [a, b] = bodies.map(|slot| {
+            let at = slot as usize;
+            let state = self.flights.known(at).map_or_else(|| self.past.state(at), |flight| flight.state);
+            let mobility = &stage.mobilities[at];
+            (state.v, mul(state.omega.saturating_abs(), mobility.reach, 32))
+        });
+        let line = [0, 1].map(|axis: usize| a.0[axis].saturating_sub(b.0[axis]).saturating_abs());
+        let most = line[0].saturating_add(line[1]).saturating_add(a.1).saturating_add(b.1);
+        most < stage.scales.least_strike(restitution, stage.bears(pair))
+    }
+
+    /// A box around the way of a collider: its body's own, or where impacts sent that.
+    fn way(&self, collider: u32, stage: &Stage<'_>) -> Aabb {
+        let body = stage.colliders.rows.value(collider as usize).body as usize;
+        match self.flights.known(body) {
+            Some(flight) if flight.strikes > 0 => flight.around,
+            _ => {
+                let (State { x, v, .. }, margins) = (self.past.state(body), stage.scales.margins);
+                stage.touch.way(collider as usize, x, v, stage.drive.gain(body, margins.tick), margins)
+            }
+        }
+    }
+
+    /// The colliders of all pairs of a body.
+    fn pairs_of(&self, place: usize, pairs: &mut Vec<[u32; 2]>) {
+        pairs.clear();
         let mut at = self.flights.list[place].first;
         while at != NONE {
             let pair = &self.engaged[at as usize];
-            if pair.colliders == colliders {
-                return true;
-            }
+            pairs.push(pair.colliders);
             at = pair.next[usize::from(pair.flights[0] as usize != place)];
         }
-        false
     }
 }

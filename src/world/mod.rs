@@ -12,7 +12,7 @@ mod status;
 mod step;
 
 use crate::body::{Attractor, Bodies, Colliders};
-use crate::contact::{Contacts, Event, Touch};
+use crate::contact::{Collision, Contacts, Event, Touch};
 use crate::motion::{Drive, Fault, Push};
 use crate::solver::{Mobility, Scales, Solver};
 use crate::store::{Arena, AttractorId, BodyId, ColliderId, record};
@@ -151,6 +151,12 @@ impl World {
     /// hashed, and a world just loaded has none.
     pub fn events(&self) -> &[Event] {
         &self.events
+    }
+
+    /// The collisions of the last step, in the order in which they happened. A value of the step, as [`World::events`]; a
+    /// copy of a world has none.
+    pub fn collisions(&self) -> &[Collision] {
+        self.solver.collisions()
     }
 
     /// Computes everything derived anew.

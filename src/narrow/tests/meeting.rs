@@ -1,7 +1,7 @@
 //! Times of first touch against closed forms and against a search by small steps.
 
 use super::*;
-use crate::narrow::{Motion, first_touch};
+use crate::narrow::{Clearance, Motion};
 use crate::num::{TURN_PER_RADIAN_Q64, hypot, sqrt};
 use crate::shape::Outline;
 
@@ -89,6 +89,10 @@ pub(super) fn separation([a, b]: &[Placed; 2], d: [i64; 2]) -> i64 {
 pub(super) fn gap(pair: [&Outline; 2], motion: &Motion, time: i64) -> i64 {
     let (placed, d) = pose(pair, motion, time);
     separation(&placed, d)
+}
+
+fn first_touch(a: &Outline, b: &Outline, motion: &Motion, until: i64, closing: i64, slack: i64) -> Option<i64> {
+    crate::narrow::first_touch(a, b, motion, until, closing, slack, &mut Clearance::default())
 }
 
 /// The same by exchange and by half a turn.

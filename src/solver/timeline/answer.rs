@@ -3,100 +3,163 @@
 use super::super::flight::{Flight, NONE, State, rim};
 use super::super::mover::Movers;
 use super::super::strike::{Strike, solve};
-use super::{Engaged, FLAT, LATE, LATER, MANY, MOST, NEVER, REACH, Stage, Timeline};
-use crate::geom::Rot;
+use super::{Engaged, FLAT, LATE, LATER, MANY, MOST, NEVER, OFTEN, ONE, REACH, Stage, Timeline};
+use crate::contact::{Collision, Pace};
+use crate::geom::{Rot, Vec2};
 use crate::motion::{Bound, Fault};
 use crate::narrow::{Manifold, collide};
-use crate::num::{Angle, add_sat, dot, round_shift};
+use crate::num::{Angle, AngularVelocity, Velocity, add_sat, dot, lane::next, round_shift};
 use crate::shape::Placed;
+
+/// So many contacts are answered together at most, but for those that meet at one time.
+const BLOCK: usize = 64;
 
 impl Timeline {
     /// Answers the group.
     pub(super) fn answer(&mut self, span: [i64; 2], stage: &Stage<'_>, movers: &mut Movers, faults: &mut Vec<Fault>) {
-        let scales = stage.scales;
-        let Timeline {
-            flights, engaged, group, locals, speeds, strikes, restitutions, members, before, settled, ..
-        } = self;
-        let time = group.iter().fold(0, |time: i64, &at| time.max(engaged[at as usize].time));
-        locals.clear();
-        speeds.clear();
-        strikes.clear();
-        restitutions.clear();
-        members.clear();
-        for &at in &*group {
-            engaged[at as usize].time = NEVER;
-            for place in engaged[at as usize].flights {
-                if !locals.contains(&place) {
-                    let flight = &mut flights.list[place as usize];
-                    (flight.state, flight.time) = (flight.at(time.max(flight.time), scales), time.max(flight.time));
-                    locals.push(place);
-                    let State { v, omega, .. } = flight.state;
-                    let mobility = &stage.mobilities[flight.slot as usize];
-                    let line = |v: i64| round_shift(v.into(), scales.shift) as i64;
-                    speeds.push([line(v[0]), line(v[1]), rim(omega, mobility, scales)]);
-                }
-            }
-        }
-        settled.clear();
-        let spent = locals.iter().any(|&place| flights.list[place as usize].strikes >= MANY);
-        for &at in &*group {
-            let pair = &engaged[at as usize];
-            let pick = |i: usize| &flights.list[pair.flights[i] as usize];
-            let (a, b) = (pick(0), pick(1));
-            let Some((manifold, between)) = touching(pair, a, b, stage) else { continue };
-            let bodies = pair.flights.map(|place| locals.iter().position(|&p| p == place).unwrap_or(0));
-            let mobility = [a, b].map(|flight| &stage.mobilities[flight.slot as usize]);
-            let strike = Strike::new(bodies, &manifold, between, mobility, pair.friction);
-            let approach = strike.approach(speeds).saturating_neg();
-            if approach > pair.least / 2 {
-                let threshold =
-                    scales.threshold(pair.restitution, press(a, b, manifold.normal), a.place != 0 && b.place != 0);
-                let bounces = approach > threshold && !spent;
-                if !bounces {
-                    // It rests, and is a row's in the next tick: until then it is not answered over and over.
-                    settled.push(at);
-                }
-                restitutions.push(if bounces { pair.restitution } else { 0 });
-                strikes.push(strike);
-                members.push(at);
-            }
-        }
-        if strikes.is_empty() {
+        let time = self.group.iter().fold(0, |time: i64, &at| time.max(self.engaged[at as usize].time));
+        self.begin(time, stage);
+        if self.strikes.is_empty() {
             // What comes nearer lies beside what it would meet, as a corner over the end of an edge.
             let later = time.saturating_add(LATER);
             for at in 0..self.group.len() {
                 let at = self.group[at] as usize;
-                self.engaged[at].depth = scales.slack;
+                self.engaged[at].depth = stage.scales.slack;
                 self.foresee(at, later, span[1], stage);
             }
             return;
         }
-        solve(strikes, restitutions, speeds, before);
-        for &at in &*settled {
-            let pair = &mut engaged[at as usize];
-            pair.least = pair.least.max(scales.least_settled());
+        let met = self.members.len();
+        self.lean(time, stage);
+        solve(&mut self.strikes, &self.restitutions, &mut self.speeds, &mut self.before);
+        for (&at, &restitution) in self.members.iter().zip(&self.restitutions) {
+            self.engaged[at as usize].rests = restitution == 0;
         }
         for at in 0..self.locals.len() {
-            self.change(self.locals[at], at, time, span, stage, movers, faults);
+            self.change(at, time, span, stage, movers, faults);
         }
-        for at in 0..self.members.len() {
+        self.tell(time, stage);
+        for at in 0..met {
             self.note(self.members[at]);
         }
         self.rest(stage);
+        self.locals.retain(|&place| self.flights.list[place as usize].changed);
+        for &place in &self.locals {
+            let flight = &mut self.flights.list[place as usize];
+            flight.surround(stage.mobilities[flight.slot as usize].reach, stage.scales);
+        }
         for at in 0..self.locals.len() {
-            let place = self.locals[at];
-            let slot = self.flights.list[place as usize].slot as usize;
-            if stage.mobilities[slot].moves() {
-                self.meet_again(place as usize, time, span[1], stage, movers);
+            self.meet_again(self.locals[at] as usize, time, span[1], stage, movers);
+        }
+    }
+
+    /// Takes in what of the group touches and closes.
+    fn begin(&mut self, time: i64, stage: &Stage<'_>) {
+        self.locals.clear();
+        self.speeds.clear();
+        self.priors.clear();
+        self.strikes.clear();
+        self.restitutions.clear();
+        self.members.clear();
+        for at in 0..self.group.len() {
+            let at = self.group[at];
+            self.engaged[at as usize].time = NEVER;
+            let Some((manifold, strike)) = self.contact(at, time, stage) else { continue };
+            let pair = &mut self.engaged[at as usize];
+            let approach = strike.approach(&self.speeds).saturating_neg();
+            if approach <= pair.least / 2 {
+                continue;
+            }
+            let [a, b] = pair.flights.map(|place| &self.flights.list[place as usize]);
+            let press = press(a, b, manifold.normal);
+            let threshold = stage.scales.threshold(pair.restitution, press, a.place != 0 && b.place != 0);
+            let spent = a.strikes.max(b.strikes) >= MANY;
+            let bounces = approach > threshold && !spent;
+            if !bounces {
+                // It rests, and is a row's in the next tick: until then it is not answered over and over.
+                pair.least = pair.least.max(stage.scales.least_settled());
+            }
+            pair.answers = pair.answers.saturating_add(1);
+            if pair.answers > OFTEN && pair.restitution < ONE {
+                pair.least = pair.least.saturating_mul(2);
+            }
+            self.restitutions.push(if bounces { pair.restitution } else { 0 });
+            self.strikes.push(strike);
+            self.members.push(at);
+        }
+    }
+
+    /// What impacts of this tick brought to rest against a body that is hit leans on it: answered with the others, or a
+    /// body without restitution is struck to and fro between two others until it is slow. Where something bounces, only
+    /// what does not separate: an impulse on it would add energy.
+    fn lean(&mut self, time: i64, stage: &Stage<'_>) {
+        let bounces = self.restitutions.iter().any(|&restitution| restitution > 0);
+        let mut seen = 0;
+        while seen < self.locals.len() {
+            let place = self.locals[seen];
+            seen = next(seen);
+            let flight = &self.flights.list[place as usize];
+            if !stage.mobilities[flight.slot as usize].moves() {
+                continue;
+            }
+            let mut at = flight.first;
+            while at != NONE && self.strikes.len() < BLOCK {
+                let Engaged { flights, next, rests, .. } = self.engaged[at as usize];
+                if rests && !self.members.contains(&at) {
+                    let known = self.locals.len();
+                    match self.contact(at, time, stage) {
+                        Some((_, strike)) if !bounces || strike.parting(&self.speeds) <= stage.scales.still() => {
+                            self.restitutions.push(0);
+                            self.strikes.push(strike);
+                            self.members.push(at);
+                        }
+                        _ => self.forget(known),
+                    }
+                }
+                at = next[usize::from(flights[0] != place)];
             }
         }
     }
 
+    /// The contact of a pair at a time, if it touches; its bodies are taken in.
+    fn contact(&mut self, at: u32, time: i64, stage: &Stage<'_>) -> Option<(Manifold, Strike)> {
+        let pair = &self.engaged[at as usize];
+        let bodies = pair.flights.map(|place| self.local(place, time, stage));
+        let pair = &self.engaged[at as usize];
+        let [a, b] = pair.flights.map(|place| &self.flights.list[place as usize]);
+        let (manifold, between) = touching(pair, a, b, stage)?;
+        let mobility = [a, b].map(|flight| &stage.mobilities[flight.slot as usize]);
+        let strike = Strike::new(bodies, &manifold, between, mobility, pair.friction);
+        Some((manifold, strike))
+    }
+
+    /// The place of a body among those of the answer, to whose time it is brought.
+    fn local(&mut self, place: u32, time: i64, stage: &Stage<'_>) -> usize {
+        if let Some(known) = self.locals.iter().position(|&local| local == place) {
+            return known;
+        }
+        let scales = stage.scales;
+        let flight = &mut self.flights.list[place as usize];
+        let time = time.max(flight.time);
+        (flight.state, flight.time, flight.changed) = (flight.at(time, scales), time, false);
+        let State { v, omega, .. } = flight.state;
+        let line = |v: i64| round_shift(v.into(), scales.shift) as i64;
+        self.speeds.push([line(v[0]), line(v[1]), rim(omega, &stage.mobilities[flight.slot as usize], scales)]);
+        self.priors.push(flight.state);
+        self.locals.push(place);
+        self.locals.len().saturating_sub(1)
+    }
+
+    /// Leaves only the first bodies in.
+    fn forget(&mut self, known: usize) {
+        self.locals.truncate(known);
+        self.speeds.truncate(known);
+        self.priors.truncate(known);
+    }
+
     /// Gives a body the speed that its impacts left it.
-    #[expect(clippy::too_many_arguments, reason = "one place of the answer")]
     fn change(
         &mut self,
-        place: u32,
         at: usize,
         time: i64,
         [_, to]: [i64; 2],
@@ -104,17 +167,19 @@ impl Timeline {
         movers: &mut Movers,
         faults: &mut Vec<Fault>,
     ) {
+        let place = self.locals[at];
         let flight = &mut self.flights.list[place as usize];
         let slot = flight.slot as usize;
         let (mobility, k) = (&stage.mobilities[slot], stage.scales.shift);
-        if !mobility.moves() {
+        let mut change = [0, 1, 2].map(|axis: usize| self.speeds[at][axis].saturating_sub(self.before[at][axis]));
+        if !mobility.moves() || change == [0; 3] {
             return;
         }
+        flight.changed = true;
         if flight.strikes == 0 {
             self.struck.push(place);
         }
         flight.strikes = flight.strikes.saturating_add(1);
-        let mut change = [0, 1, 2].map(|axis: usize| self.speeds[at][axis].saturating_sub(self.before[at][axis]));
         if flight.strikes >= MANY {
             faults.push(Fault { slot, bound: Bound::Impacts });
         }
@@ -129,6 +194,36 @@ impl Timeline {
         }
         *omega = add_sat(*omega, mobility.over_sigma(change[2], 48u32.saturating_sub(k), 48));
         movers.strike(flight.place, change, to.saturating_sub(time), stage.scales);
+    }
+
+    /// Tells what happened.
+    fn tell(&mut self, time: i64, stage: &Stage<'_>) {
+        let Stage { bodies, colliders, scales, .. } = *stage;
+        let Timeline { flights, engaged, locals, priors, strikes, members, collisions, order, .. } = self;
+        for (strike, &at) in strikes.iter().zip(&*members) {
+            let pair = &engaged[at as usize];
+            let [one, other] = pair.flights.map(|place| flights.list[place as usize]);
+            let masses = [one, other].map(|flight| bodies.cold.value(flight.slot as usize).mass);
+            let impulse = strike.impulse_on_a(masses, scales.shift);
+            if impulse.is_zero() {
+                continue;
+            }
+            let id = |at: usize| colliders.id(pair.colliders[at] as usize);
+            let prior = |at: usize| pace(&priors[strike.bodies[at]]);
+            let latter = |at: usize| pace(&flights.list[locals[strike.bodies[at]] as usize].state);
+            collisions.push(Collision {
+                a: id(0),
+                b: id(1),
+                order: *order,
+                time: scales.time(time),
+                point: strike.center(one.state.x),
+                normal: strike.normal(),
+                impulse,
+                before: [prior(0), prior(1)],
+                after: [latter(0), latter(1)],
+            });
+        }
+        *order = order.saturating_add(1);
     }
 
     /// What came to rest is held: of the forces, contacts take what would press them together in what is left of the tick.
@@ -179,6 +274,12 @@ impl Timeline {
             met => self.met.push(met),
         }
     }
+}
+
+/// How fast a body is.
+fn pace(state: &State) -> Pace {
+    let [x, y] = state.v.map(Velocity::from_bits);
+    Pace { velocity: Vec2::new(x, y), angular_velocity: AngularVelocity::from_bits(state.omega) }
 }
 
 /// Where a pair touches: its manifold, and the way from a's centre to b's. Of two points that are not level, the lower.
