@@ -115,7 +115,6 @@ fn meet(e: f64, pick: impl Fn(usize) -> bool) {
 }
 
 #[test]
-#[ignore = "triangles pass each other: pairs that come corner to corner are not looked at"]
 fn two_elastic_bullets_that_meet_do_not_pass_each_other() {
     meet(1.0, |_| true);
 }
@@ -126,13 +125,12 @@ fn two_flat_or_round_bullets_that_meet_stop_each_other() {
 }
 
 #[test]
-#[ignore = "triangles pass each other: pairs that come corner to corner are not looked at"]
+#[ignore = "overlap 3.5 cm: what rolls on another is slow, sinks and is lost for the tick"]
 fn two_bullets_that_meet_askew_do_not_pass_each_other() {
     meet(0.0, |kind| kind > 2);
 }
 
 #[test]
-#[ignore = "overlap 6.7 cm, 53 % of the energy: pairs that come corner to corner are not looked at, rows take what parts"]
 fn a_needle_that_spins_hits_a_post() {
     // 400 rad/s: the rim of 1 m at the 400 m/s of contacts.
     for (unit_shift, omega) in [(0, 400.0), (0, -400.0), (6, 400.0)] {
@@ -202,19 +200,23 @@ fn room(
 }
 
 #[test]
-#[ignore = "overlap 0.86 m, 99 % of the energy: pairs that come corner to corner are not looked at"]
 fn bullets_stay_in_a_room() {
     room("200 polygons", 200, 1000, 0, 1, |rng| body(pebble(rng), 0.0, 1.0));
 }
 
 #[test]
-#[ignore = "discs lose 11 % of their energy: rows take what parts"]
 fn bullets_of_other_kinds_stay_in_a_room() {
     room("100 discs", 100, 500, 0, 2, |rng| body(disc(0.2 + 0.3 * rng.unit()), 0.0, 1.0));
     room("100 that do not turn", 100, 500, 0, 3, |rng| BodyDef {
         fixed_rotation: true,
         ..body(rectangle(0.3 + 0.5 * rng.unit(), 0.6), 0.0, 1.0)
     });
+    room("100 polygons, unit shift 6", 100, 500, 6, 5, |rng| body(pebble(rng), 0.0, 1.0));
+}
+
+#[test]
+#[ignore = "1.7e-5 of the energy too much: two contacts of one pair, 0.5 mm apart, are not solved after 64 rounds"]
+fn compound_bullets_stay_in_a_room() {
     room("100 compounds", 100, 500, 0, 4, |rng| {
         let part =
             |collider: ColliderDef, x: f64, y: f64| ColliderDef { offset: at(x, y), ..surface(collider, 0.0, 1.0) };
@@ -225,7 +227,6 @@ fn bullets_of_other_kinds_stay_in_a_room() {
         ];
         BodyDef { colliders, ..BodyDef::default() }
     });
-    room("100 polygons, unit shift 6", 100, 500, 6, 5, |rng| body(pebble(rng), 0.0, 1.0));
 }
 
 /// Bullets with friction and less restitution in a closed room.
@@ -254,13 +255,13 @@ fn lossy(speed: f64) {
 }
 
 #[test]
-#[ignore = "overlap 0.42 m: pairs that come corner to corner are not looked at, slow ones sink and are lost for the tick"]
+#[ignore = "overlap 7.8 cm at 20 m/s, e 0.5: what rolls on another is slow, sinks and is lost for the tick"]
 fn what_loses_energy_stays_in_a_room() {
     lossy(20.0);
 }
 
 #[test]
-#[ignore = "one is 0.15 m in a wall in tick 9: slow pairs sink and are lost for the tick"]
+#[ignore = "overlap 0.13 m at 200 m/s, e 0.5: what rolls on another is slow, sinks and is lost for the tick"]
 fn bullets_that_lose_energy_stay_in_a_room() {
     lossy(200.0);
 }
@@ -316,7 +317,6 @@ fn a_wall_that_sweeps_drives_a_crowd_that_bounces() {
 }
 
 #[test]
-#[ignore = "a disc of 5 cm is 1.4 cm behind the front: the wall's held pairs are the soft rows'"]
 fn a_wall_that_sweeps_pushes_a_crowd_together() {
     sweep(0.0, true);
 }
