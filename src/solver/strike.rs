@@ -19,9 +19,9 @@ use crate::num::{Impulse, Length, Mass, Quantity, div, dot, mul, mul_div};
 pub(crate) type Speed = [i64; 3];
 
 const LIMIT: i64 = 1 << 61;
-/// How often contacts are gone through at most, until no impulse changes any more; if nothing is elastic, by no more than
-/// a 2²²th of the fastest approach.
-const ROUNDS: u32 = 64;
+/// How often contacts are gone through at most, if one is elastic until no impulse changes any more; else until none does
+/// by more than a 2²²th of the fastest approach: what is left then is met again.
+const ROUNDS: [u32; 2] = [32, 256];
 /// C_R = 1.
 const ONE: i64 = 1 << 48;
 
@@ -354,7 +354,7 @@ pub(crate) fn solve(strikes: &mut [Strike], restitutions: &[i64], speeds: &mut [
             strike.aim(before, if attempt == 0 { restitution } else { 0 });
             strike.rough = if attempt < 2 { strike.rough } else { 0 };
         }
-        for _ in 0..ROUNDS {
+        for _ in 0..ROUNDS[usize::from(elastic)] {
             let sweep = strikes.iter_mut().map(|strike| strike.sweep(speeds));
             if sweep.fold(0, i64::max) <= enough {
                 break;

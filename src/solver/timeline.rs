@@ -117,7 +117,8 @@ pub(crate) struct Timeline {
     /// What happened, and how many answers there were.
     pub(crate) collisions: Vec<Collision>,
     order: u32,
-    // Space for one answer: pairs that meet; places of their flights, how fast these are, and were; contacts.
+    // Space for one answer: pairs that meet, and those of one answer; places of their flights, how fast these are, and were; contacts.
+    batch: Vec<(i64, u32)>,
     group: Vec<u32>,
     locals: Vec<u32>,
     speeds: Vec<Speed>,
@@ -219,6 +220,10 @@ impl Timeline {
         let slack = slack.max(mul(pair.least, scales.margins.tick, 78));
         if let Some(after) = first_touch(one, other, &motion, rest, closing, slack, &mut pair.clearance) {
             let time = from.saturating_add(after);
+            if time > TICK.saturating_sub(SAME) {
+                // The next tick's, so that what meets when one ends and the other begins meets at one time.
+                return;
+            }
             pair.time = time;
             self.queue.push(Reverse((time, pair.colliders[0], pair.colliders[1], at as u32)));
         }
@@ -234,16 +239,32 @@ impl Timeline {
     ) {
         self.from = from;
         self.follow(to, stage, movers);
-        while let Some(&Reverse((time, _, _, at))) = self.queue.peek() {
+        while let Some(&Reverse((time, ..))) = self.queue.peek() {
             if time > to {
                 break;
             }
-            self.queue.pop();
-            if self.engaged[at as usize].time == time {
-                self.gather(time, at, stage);
+            // What an answer sends on meets after all that met with it, so ids have no say in it.
+            self.take_batch(time);
+            while self.gather(stage) {
                 self.answer([from, to], stage, movers, faults);
             }
         }
+    }
+
+    /// Takes the pairs that meet at a time out of the queue, in order.
+    fn take_batch(&mut self, time: i64) {
+        self.batch.clear();
+        while let Some(&Reverse((other, _, _, at))) = self.queue.peek() {
+            if other > time.saturating_add(SAME) {
+                break;
+            }
+            self.queue.pop();
+            if self.engaged[at as usize].time == other && !self.batch.contains(&(other, at)) {
+                self.batch.push((other, at));
+            }
+        }
+        let engaged = &self.engaged;
+        self.batch.sort_unstable_by_key(|&(_, at)| engaged[at as usize].colliders);
     }
 
     /// Bodies that rows push go as these have them in this substep; what may meet them is looked at again.
@@ -302,29 +323,24 @@ impl Timeline {
         self.flights.list[place].looked = self.order;
     }
 
-    /// The pairs that meet at a time and hang together with the first by bodies that move, in order.
-    fn gather(&mut self, time: i64, first: u32, stage: &Stage<'_>) {
-        self.group.clear();
-        self.group.push(first);
-        self.found.clear();
-        while let Some(&Reverse((other, _, _, at))) = self.queue.peek() {
-            if other > time.saturating_add(SAME) {
-                break;
-            }
-            self.queue.pop();
-            if self.engaged[at as usize].time == other && !self.group.contains(&at) && !self.found.contains(&at) {
-                self.found.push(at);
-            }
+    /// Of what is left of the batch the first pair, and what hangs together with it by bodies that move, in order; false if
+    /// nothing is.
+    fn gather(&mut self, stage: &Stage<'_>) -> bool {
+        let Timeline { flights, engaged, batch, group, .. } = self;
+        // An answer may have changed bodies of others, which then are in the queue again.
+        batch.retain(|&(time, at)| engaged[at as usize].time == time);
+        if batch.is_empty() {
+            return false;
         }
+        group.clear();
+        group.push(batch.remove(0).1);
         let mut seen = 0;
-        while seen < self.group.len() && !self.found.is_empty() {
-            let flights = self.engaged[self.group[seen] as usize].flights;
-            let joined = flights.map(|place| {
-                let slot = self.flights.list[place as usize].slot as usize;
+        while seen < group.len() && !batch.is_empty() {
+            let joined = engaged[group[seen] as usize].flights.map(|place| {
+                let slot = flights.list[place as usize].slot as usize;
                 if stage.mobilities[slot].moves() { place } else { NONE }
             });
-            let (engaged, group) = (&self.engaged, &mut self.group);
-            self.found.retain(|&at| {
+            batch.retain(|&(_, at)| {
                 let hangs = engaged[at as usize].flights.iter().any(|place| joined.contains(place));
                 if hangs {
                     group.push(at);
@@ -333,12 +349,8 @@ impl Timeline {
             });
             seen = next(seen);
         }
-        for &at in &self.found {
-            let Engaged { time, colliders: [a, b], .. } = self.engaged[at as usize];
-            self.queue.push(Reverse((time, a, b, at)));
-        }
-        let engaged = &self.engaged;
-        self.group.sort_unstable_by_key(|&at| engaged[at as usize].colliders);
+        group.sort_unstable_by_key(|&at| engaged[at as usize].colliders);
+        true
     }
 
     /// A body that was struck goes another way: whom it may meet there. `around`: a box about that.
