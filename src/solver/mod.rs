@@ -3,15 +3,22 @@
 //! A tick: rows from manifolds, last tick's impulses, then in each substep forces, a sweep with soft rows, positions,
 //! impacts at their times, a sweep without. What comes together fast has no rows: it strikes (`timeline`).
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 mod color;
 mod flight;
 mod impact;
+mod kernel;
 mod mobility;
 mod mover;
 mod prepare;
 mod rows;
 mod scales;
 mod strike;
+#[cfg(target_arch = "x86_64")]
+mod sweep;
+#[cfg(test)]
+mod tests;
 mod timeline;
 
 use crate::body::{Bodies, Colliders};
@@ -21,6 +28,7 @@ use crate::num::{cross, dot, mul};
 use color::Colors;
 use flight::TICK;
 pub use impact::{Impact, ImpactError, Striker, impact};
+use kernel::Kernel;
 pub(crate) use mobility::Mobility;
 use mover::Movers;
 use prepare::Joint;
@@ -51,6 +59,7 @@ pub(crate) struct Solver {
     timeline: Timeline,
     colors: Colors,
     blocks: Vec<Block>,
+    kernel: Kernel,
 }
 
 impl Clone for Solver {
@@ -68,7 +77,8 @@ impl Solver {
     /// Rows for the pairs of this tick that touch or come near slowly, while the bodies are where it begins; what comes
     /// fast is left to strike.
     pub(crate) fn prepare(&mut self, touch: &mut Touch, contacts: &Contacts, bodies: &Bodies, drive: &Drive) {
-        let Solver { mobilities, scales, movers, before, free, places, fast, timeline, colors, blocks } = self;
+        let Solver { mobilities, scales, movers, before, free, places, fast, timeline, colors, blocks, kernel: _ } =
+            self;
         movers.clear(bodies.cold.len());
         timeline.clear(bodies.cold.len());
         places.clear();
@@ -131,7 +141,7 @@ impl Solver {
         drive: &Drive,
         faults: &mut Vec<Fault>,
     ) {
-        let Solver { mobilities, scales, movers, before, places, fast, timeline, colors, blocks, .. } = self;
+        let Solver { mobilities, scales, movers, before, places, fast, timeline, colors, blocks, kernel, .. } = self;
         let stage = Stage { bodies, colliders, touch, drive, mobilities, scales };
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
@@ -146,14 +156,14 @@ impl Solver {
             for substep in 1..=scales.substeps {
                 movers.begin(substep == 1);
                 for block in blocks.iter_mut() {
-                    block.solve::<true>(u8::MAX, &mut movers.lanes, scales);
+                    kernel.solve::<true>(block, u8::MAX, &mut movers.lanes, scales);
                 }
                 movers.drift(scales);
                 timeline.run(scales.span(substep), &stage, movers, faults);
                 let all = substep % RELAX == 0 || substep == scales.substeps;
                 for block in blocks.iter_mut().filter(|block| all || block.pushes != 0) {
                     let lanes = if all { u8::MAX } else { block.pushes };
-                    block.solve::<false>(lanes, &mut movers.lanes, scales);
+                    kernel.solve::<false>(block, lanes, &mut movers.lanes, scales);
                 }
             }
             for (row, &places) in places.iter().enumerate() {
