@@ -21,12 +21,16 @@ impl Dice {
         (self.bits() >> 20) % n == 0
     }
 
-    /// Of `low ..= high`: an end, something of any order of magnitude, or anything.
+    /// Of `low ..= high`: an end, a power of two or one beside it, something of any order of magnitude, or anything.
     fn within(&mut self, low: i64, high: i64) -> i64 {
         let any = (self.bits() as i64 >> (self.bits() >> 58)).clamp(low, high);
         match self.bits() >> 61 {
             0 => [low, high][usize::from(self.one_in(2))],
             1 => 0i64.clamp(low, high),
+            3 => {
+                let power = (1i64 << (self.bits() >> 58).min(58)) + (self.bits() >> 33) as i64 % 3 - 1;
+                if self.one_in(2) { power.clamp(low, high) } else { (-power).clamp(low, high) }
+            }
             2 => {
                 let width = i128::from(high) - i128::from(low) + 1;
                 (i128::from(low) + i128::from(self.bits()) % width) as i64
@@ -49,8 +53,7 @@ impl Dice {
         }
     }
 
-    fn mover(&mut self, fast: i64) -> Mover {
-        let d = 1 << 30;
+    fn mover(&mut self, fast: i64, d: i64) -> Mover {
         let mut v = || self.within(-fast, fast);
         let [x, y, w] = [v(), v(), v()];
         Mover { v: [x, y], w, phi: self.within(-d, d), d: [self.within(-d, d) as i32, self.within(-d, d) as i32] }
@@ -114,8 +117,8 @@ struct Seen {
 
 fn compare<const BIASED: bool>(dice: &mut Dice, kernel: Kernel, scales: &Scales, seen: &mut Seen) {
     // Ordinary numbers, or the ends of what the formats hold.
-    let (fast, far) = if dice.one_in(2) { (1 << 57, 1 << 30) } else { (1 << 50, 1 << 22) };
-    let mut movers: Vec<Mover> = (0..2 + 2 * LANES).map(|_| dice.mover(fast)).collect();
+    let (fast, far) = if dice.one_in(2) { (1 << 57, 1 << 30) } else { (1 << 50, 1 << 14) };
+    let mut movers: Vec<Mover> = (0..2 + 2 * LANES).map(|_| dice.mover(fast, far)).collect();
     movers[0] = Mover::default();
     let mut block = dice.block(far);
     let (mut movers_2, mut block_2) = (movers.clone(), block.clone());
