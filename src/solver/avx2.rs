@@ -64,6 +64,17 @@ impl Avx2 {
         unsafe { with_avx2::<BIASED>(self, block, lanes, movers, scales) }
     }
 
+    /// Last tick's impulses, see [`sweep::warm_start`].
+    #[inline]
+    pub(super) fn warm_start(self, block: &Block, movers: &mut [Mover]) {
+        #[target_feature(enable = "avx2")]
+        unsafe fn with_avx2(avx2: Avx2, block: &Block, movers: &mut [Mover]) {
+            sweep::warm_start(avx2, block, movers);
+        }
+        // SAFETY: `self` says that the processor has AVX2.
+        unsafe { with_avx2(self, block, movers) }
+    }
+
     #[inline(always)]
     pub(super) fn narrow(self, value: i32) -> Narrow {
         Narrow(vector!(_mm256_set1_epi32(value)))

@@ -39,4 +39,14 @@ impl Kernel {
             }
         }
     }
+
+    /// [`Block::warm_start`].
+    #[inline]
+    pub(super) fn warm_start(self, block: &Block, movers: &mut [Mover]) {
+        match self {
+            Kernel::Definition => block.warm_start(movers),
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx2(avx2) => avx2.warm_start(block, movers),
+        }
+    }
 }

@@ -150,8 +150,8 @@ impl Solver {
             timeline.run([0, TICK], &stage, movers, faults);
         } else {
             movers.take_kicks(bodies, mobilities, scales);
-            for block in blocks.iter_mut() {
-                block.warm_start(&mut movers.lanes);
+            for block in blocks.iter() {
+                kernel.warm_start(block, &mut movers.lanes);
             }
             for substep in 1..=scales.substeps {
                 movers.begin(substep == 1);
@@ -200,6 +200,19 @@ impl Solver {
     }
 }
 
+/// No less than the speed at which the points of a pair come together, with what forces add: directions left out, for
+/// pairs that are clearly slower than what strikes.
+fn fastest(pair: &Pair, between: [i64; 2], v: [i64; 2], omega: [i64; 2], gain: [[i64; 2]; 2]) -> i64 {
+    let add = |sum: i64, c: i64| sum.saturating_add(c.saturating_abs());
+    let length = |v: [i64; 2]| add(add(1, v[0]), v[1]);
+    let [first, second] = pair.manifold.points.map(|point| length(point.arm));
+    let arm = first.max(second);
+    let arms = [arm, add(arm, length(between))];
+    let turning = [0, 1].map(|body: usize| mul(omega[body].saturating_abs(), arms[body], 32));
+    // 16 for the roundings of both.
+    turning.into_iter().chain(v).chain(gain.into_iter().flatten()).fold(16, add)
+}
+
 /// Whether a near pair comes together so fast that it strikes.
 fn strikes(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scales, among: bool) -> bool {
     let [a, b] = pair.bodies.map(|slot| slot as usize);
@@ -207,9 +220,26 @@ fn strikes(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scales, among: 
     let v = [va.x.to_bits().saturating_sub(vb.x.to_bits()), va.y.to_bits().saturating_sub(vb.y.to_bits())];
     let omega = [a, b].map(|at| bodies.omega.get(at).to_bits());
     let gain = [a, b].map(|at| drive.gain(at, scales.margins.tick));
-    let n = pair.manifold.normal.map(i64::from);
     let between = |c: &[i64]| c[b].saturating_sub(c[a]);
     let between = [between(bodies.x.bits()), between(bodies.y.bits())];
+    // Without restitution the threshold is the same whatever presses.
+    let slow = pair.restitution == 0 && fastest(pair, between, v, omega, gain) <= scales.threshold(0, 0, among);
+    let strikes = || comes_fast(pair, between, v, omega, gain, scales, among);
+    debug_assert!(!slow || !strikes(), "a bound of the speed is below it");
+    !slow && strikes()
+}
+
+/// The same by the directions and arms of its points.
+fn comes_fast(
+    pair: &Pair,
+    between: [i64; 2],
+    v: [i64; 2],
+    omega: [i64; 2],
+    gain: [[i64; 2]; 2],
+    scales: &Scales,
+    among: bool,
+) -> bool {
+    let n = pair.manifold.normal.map(i64::from);
     let press = gain.map(|gain| dot(gain, n, 30));
     let mut closest = i64::MAX;
     let mut approach = 0;

@@ -182,7 +182,7 @@ impl Block {
     }
 
     /// What the last tick's impulses do to the bodies.
-    pub(crate) fn warm_start(&mut self, movers: &mut [Mover]) {
+    pub(crate) fn warm_start(&self, movers: &mut [Mover]) {
         for i in 0..LANES {
             if self.bodies[0][i] != self.bodies[1][i] {
                 self.give(i, movers, [&self.friction, &self.points[0], &self.points[1]].map(|row| row.impulse[i]));

@@ -71,6 +71,20 @@ pub(super) fn sweep<const BIASED: bool>(
     (!mild.signs(), pushes_first.or(pushes_second).and(chosen).signs())
 }
 
+/// What the last tick's impulses do to the bodies.
+#[inline(always)]
+pub(super) fn warm_start(avx2: Avx2, block: &Block, movers: &mut [Mover]) {
+    let chosen = avx2.chosen(&block.bodies, u8::MAX);
+    let a = Eight::gather(avx2, movers, &block.bodies[0]);
+    let b = Eight::gather(avx2, movers, &block.bodies[1]);
+    let slide = avx2.load(&block.friction.impulse).and(chosen).factor();
+    let first = avx2.load(&block.points[0].impulse).and(chosen).factor();
+    let second = avx2.load(&block.points[1].impulse).and(chosen).factor();
+    let [a, b] = give(avx2, block, [a, b], [slide, first, second]);
+    a.scatter(movers, &block.bodies[0]);
+    b.scatter(movers, &block.bodies[1]);
+}
+
 /// A point's impulse.
 #[inline(always)]
 fn keep(avx2: Avx2, block: &mut Block, at: usize, impulse: Narrow, chosen: Narrow) {

@@ -122,6 +122,9 @@ fn compare<const BIASED: bool>(dice: &mut Dice, kernel: Kernel, scales: &Scales,
     movers[0] = Mover::default();
     let mut block = dice.block(far);
     let (mut movers_2, mut block_2) = (movers.clone(), block.clone());
+    block.warm_start(&mut movers);
+    kernel.warm_start(&block, &mut movers_2);
+    assert_eq!(movers, movers_2, "from {block:#?}");
     for _ in 0..3 {
         let lanes = if dice.one_in(2) { u8::MAX } else { dice.bits() as u8 };
         let before = block.clone();
