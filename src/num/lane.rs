@@ -101,6 +101,10 @@ pub(crate) const fn clamp(value: i64, low: i64, high: i64) -> i64 {
 /// A coefficient (Q28) times a velocity of 48 fraction bits below 2⁶¹, to nearest and odd.
 #[inline(always)]
 pub(crate) const fn scale(coefficient: i32, v: i64) -> i64 {
+    // Nearly always: then 64 bits do.
+    if v as i32 as i64 == v {
+        return round::<28>(coefficient as i64 * v);
+    }
     let product = coefficient as i128 * v as i128;
     ((product + (1 << 27) + (product >> 127)) >> 28) as i64
 }

@@ -35,6 +35,13 @@ const fn round_bounded(value: i128, shift: u32) -> i128 {
     (value + (1 << (shift - 1)) + (value >> 127)) >> shift
 }
 
+/// [`round_shift`], in less time where [`round_bounded`] may be asked: nearly always.
+#[inline]
+const fn round_sum(value: i128, shift: u32) -> i128 {
+    let bounded = value >> 126 == value >> 127 && shift >= 1 && shift <= 126;
+    if bounded { round_bounded(value, shift) } else { round_shift(value, shift) }
+}
+
 /// A shift within the contract of the product kernels.
 const fn limited(shift: u32) -> u32 {
     debug_assert!(shift >= 1 && shift <= 126, "a product is shifted by 1 to 126 bits");
@@ -94,14 +101,14 @@ pub const fn mul_add(a: i64, b: i64, c: i64, lift: u32, shift: u32) -> i64 {
 #[inline]
 pub const fn dot(a: [i64; 2], b: [i64; 2], shift: u32) -> i64 {
     let sum = (a[0] as i128 * b[0] as i128).saturating_add(a[1] as i128 * b[1] as i128);
-    clamp_i64(round_shift(sum, shift))
+    clamp_i64(round_sum(sum, shift))
 }
 
 /// `(ax·by − ay·bx) / 2^shift` with one rounding; counter-clockwise positive. Overflow: saturates at ±`i64::MAX`.
 #[inline]
 pub const fn cross(a: [i64; 2], b: [i64; 2], shift: u32) -> i64 {
     let difference = (a[0] as i128 * b[1] as i128).saturating_sub(a[1] as i128 * b[0] as i128);
-    clamp_i64(round_shift(difference, shift))
+    clamp_i64(round_sum(difference, shift))
 }
 
 /// `n / d`, rounded to nearest, ties away from zero.

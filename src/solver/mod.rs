@@ -3,15 +3,22 @@
 //! A tick: rows from manifolds, last tick's impulses, then in each substep forces, a sweep with soft rows, positions,
 //! impacts at their times, a sweep without. What comes together fast has no rows: it strikes (`timeline`).
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 mod color;
 mod flight;
 mod impact;
+mod kernel;
 mod mobility;
 mod mover;
 mod prepare;
 mod rows;
 mod scales;
 mod strike;
+#[cfg(target_arch = "x86_64")]
+mod sweep;
+#[cfg(test)]
+mod tests;
 mod timeline;
 
 use crate::body::{Bodies, Colliders};
@@ -21,6 +28,7 @@ use crate::num::{cross, dot, mul};
 use color::Colors;
 use flight::TICK;
 pub use impact::{Impact, ImpactError, Striker, impact};
+use kernel::Kernel;
 pub(crate) use mobility::Mobility;
 use mover::Movers;
 use prepare::Joint;
@@ -52,6 +60,7 @@ pub(crate) struct Solver {
     timeline: Timeline,
     colors: Colors,
     blocks: Vec<Block>,
+    kernel: Kernel,
 }
 
 impl Clone for Solver {
@@ -69,7 +78,8 @@ impl Solver {
     /// Rows for the pairs of this tick that touch or come near slowly, while the bodies are where it begins; what comes
     /// fast is left to strike.
     pub(crate) fn prepare(&mut self, touch: &mut Touch, contacts: &Contacts, bodies: &Bodies, drive: &Drive) {
-        let Solver { mobilities, scales, movers, before, free, places, fast, timeline, colors, blocks } = self;
+        let Solver { mobilities, scales, movers, before, free, places, fast, timeline, colors, blocks, kernel: _ } =
+            self;
         movers.clear(bodies.cold.len());
         timeline.clear(bodies.cold.len());
         places.clear();
@@ -133,7 +143,7 @@ impl Solver {
         drive: &Drive,
         faults: &mut Vec<Fault>,
     ) {
-        let Solver { mobilities, scales, movers, before, places, fast, timeline, colors, blocks, .. } = self;
+        let Solver { mobilities, scales, movers, before, places, fast, timeline, colors, blocks, kernel, .. } = self;
         let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[] };
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
@@ -142,20 +152,20 @@ impl Solver {
             timeline.run([0, TICK], &stage, movers, faults);
         } else {
             movers.take_kicks(bodies, mobilities, scales);
-            for block in blocks.iter_mut() {
-                block.warm_start(&mut movers.lanes);
+            for block in blocks.iter() {
+                kernel.warm_start(block, &mut movers.lanes);
             }
             for substep in 1..=scales.substeps {
                 movers.begin(substep == 1);
                 for block in blocks.iter_mut() {
-                    block.solve::<true>(u8::MAX, &mut movers.lanes, scales);
+                    kernel.solve::<true>(block, u8::MAX, &mut movers.lanes, scales);
                 }
                 movers.drift(scales);
                 timeline.run(scales.span(substep), &Stage { blocks, ..stage }, movers, faults);
                 let all = substep % RELAX == 0 || substep == scales.substeps;
                 for block in blocks.iter_mut().filter(|block| all || block.pushes != 0) {
                     let lanes = if all { u8::MAX } else { block.pushes };
-                    block.solve::<false>(lanes, &mut movers.lanes, scales);
+                    kernel.solve::<false>(block, lanes, &mut movers.lanes, scales);
                 }
             }
             for (row, &places) in places.iter().enumerate() {
@@ -197,6 +207,19 @@ impl Solver {
     }
 }
 
+/// No less than the speed at which the points of a pair come together, with what forces add: directions left out, for
+/// pairs that are clearly slower than what strikes.
+fn fastest(pair: &Pair, between: [i64; 2], v: [i64; 2], omega: [i64; 2], gain: [[i64; 2]; 2]) -> i64 {
+    let add = |sum: i64, c: i64| sum.saturating_add(c.saturating_abs());
+    let length = |v: [i64; 2]| add(add(1, v[0]), v[1]);
+    let [first, second] = pair.manifold.points.map(|point| length(point.arm));
+    let arm = first.max(second);
+    let arms = [arm, add(arm, length(between))];
+    let turning = [0, 1].map(|body: usize| mul(omega[body].saturating_abs(), arms[body], 32));
+    // 16 for the roundings of both.
+    turning.into_iter().chain(v).chain(gain.into_iter().flatten()).fold(16, add)
+}
+
 /// Whether a near pair comes together so fast that it strikes.
 fn strikes(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scales, among: bool) -> bool {
     let [a, b] = pair.bodies.map(|slot| slot as usize);
@@ -204,9 +227,26 @@ fn strikes(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scales, among: 
     let v = [va.x.to_bits().saturating_sub(vb.x.to_bits()), va.y.to_bits().saturating_sub(vb.y.to_bits())];
     let omega = [a, b].map(|at| bodies.omega.get(at).to_bits());
     let gain = [a, b].map(|at| drive.gain(at, scales.margins.tick));
-    let n = pair.manifold.normal.map(i64::from);
     let between = |c: &[i64]| c[b].saturating_sub(c[a]);
     let between = [between(bodies.x.bits()), between(bodies.y.bits())];
+    // Without restitution the threshold is the same whatever presses.
+    let slow = pair.restitution == 0 && fastest(pair, between, v, omega, gain) <= scales.threshold(0, 0, among);
+    let strikes = || comes_fast(pair, between, v, omega, gain, scales, among);
+    debug_assert!(!slow || !strikes(), "a bound of the speed is below it");
+    !slow && strikes()
+}
+
+/// The same by the directions and arms of its points.
+fn comes_fast(
+    pair: &Pair,
+    between: [i64; 2],
+    v: [i64; 2],
+    omega: [i64; 2],
+    gain: [[i64; 2]; 2],
+    scales: &Scales,
+    among: bool,
+) -> bool {
+    let n = pair.manifold.normal.map(i64::from);
     let press = gain.map(|gain| dot(gain, n, 30));
     let mut closest = i64::MAX;
     let mut slowest = i64::MAX;

@@ -15,12 +15,14 @@ use core::mem::replace;
 /// |---|---|---|
 /// | `v`, `w` | Q48 m/s over 2^k; w = σ·ω | 2⁵⁷ |
 /// | `d`, `phi` | Q26 m over 2^k since the tick began; φ = σ·θ | 2³⁰ |
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(64))]
 pub(crate) struct Mover {
+    // These four are read at once by lanes side by side.
     pub(crate) v: [i64; 2],
     pub(crate) w: i64,
+    pub(crate) phi: i64,
     pub(crate) d: [i32; 2],
-    pub(crate) phi: i32,
 }
 
 impl Mover {
@@ -29,7 +31,7 @@ impl Mover {
         // At most 400 m/s for as many substeps as the tick has, Q20, times h in Q30: below 2⁵⁹; to Q26.
         let way = |sum: i64| lane::round_to::<24>(lane::times(scales.coarse, sum));
         self.d = [way(sum[0]), way(sum[1])];
-        self.phi = way(sum[2]);
+        self.phi = way(sum[2]).into();
     }
 }
 

@@ -11,19 +11,19 @@ use crate::num::lane::{self, add, mul, sub};
 /// Contacts side by side.
 pub(crate) const LANES: usize = 8;
 /// The speed from which on a row is said to push: 1/64 m/s, 50 fraction bits, as a bias.
-const PUSHES: i64 = -(1 << 44);
+pub(super) const PUSHES: i64 = -(1 << 44);
 /// The impulse from which on a row is said to bear a load: 1/128 m/s, Q20.
-const LOAD: i64 = 1 << 13;
+pub(super) const LOAD: i64 = 1 << 13;
 /// The change of an impulse from which on it is a blow: 1/64 m/s, Q20.
-const BLOW: i64 = 1 << 14;
+pub(super) const BLOW: i64 = 1 << 14;
 /// How often a blow goes round.
 const ROUNDS: u32 = 8;
 /// The greatest impulse λ̂: 512 m/s.
-const IMPULSE_MAX: i64 = 1 << 29;
-type Lane = [i32; LANES];
+pub(super) const IMPULSE_MAX: i64 = 1 << 29;
+pub(super) type Lane = [i32; LANES];
 
 /// One direction at one point. Formats as in [`lane`]: coefficients Q28, `impulse` Q20.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Row {
     /// α_a and α_b.
     pub(crate) arm: [Lane; 2],
@@ -37,7 +37,7 @@ pub(crate) struct Row {
 
 /// Eight contacts of which no two share a body that moves. A lane without a contact has the same body twice. A second
 /// point that a contact does not have has coefficients of zero and a separation that never closes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Block {
     /// Places among the movers.
     pub(crate) bodies: [[u32; LANES]; 2],
@@ -89,18 +89,24 @@ impl Block {
     /// overlaps are pushed apart through the soft rows; else the rows only stop what approaches.
     #[inline(never)]
     pub(crate) fn solve<const BIASED: bool>(&mut self, lanes: u8, movers: &mut [Mover], scales: &Scales) {
-        let mut pushes = 0;
-        for i in 0..LANES {
-            if lanes >> i & 1 == 0 {
-                continue;
-            }
+        let (mut blows, mut pushes) = (0, 0);
+        for i in (0..LANES).filter(|i| lanes >> i & 1 != 0) {
             let (blow, pushed) = self.contact::<BIASED, true>(i, movers, scales);
+            blows |= u8::from(blow) << i;
             pushes |= u8::from(pushed) << i;
-            if blow {
+        }
+        self.pushes = pushes;
+        self.go_rounds::<BIASED>(blows, movers, scales);
+    }
+
+    /// After a sweep: what is to be done about the contacts that took a blow. The others share no body with them.
+    #[inline(always)]
+    pub(super) fn go_rounds<const BIASED: bool>(&mut self, blows: u8, movers: &mut [Mover], scales: &Scales) {
+        if blows != 0 {
+            for i in (0..LANES).filter(|i| blows >> i & 1 != 0) {
                 self.go_round::<BIASED>(i, movers, scales);
             }
         }
-        self.pushes = pushes;
     }
 
     /// A blow goes round between the two points until both bear their part of it: a box that lands flat is not to turn in
@@ -140,7 +146,7 @@ impl Block {
 
         let d = [0, 1].map(|axis| sub(a.d[axis].into(), b.d[axis].into()));
         let apart = add(lane::times(nx, d[0]), lane::times(ny, d[1]));
-        let phi = [a.phi, b.phi];
+        let phi = [a.phi as i32, b.phi as i32];
         let separation = [0, 1].map(|at| {
             let moved = lane::round::<28>(add(apart, turning(&self.points[at], phi)));
             lane::limit(add(self.separation[at][i].into(), moved))
@@ -176,7 +182,7 @@ impl Block {
     }
 
     /// What the last tick's impulses do to the bodies.
-    pub(crate) fn warm_start(&mut self, movers: &mut [Mover]) {
+    pub(crate) fn warm_start(&self, movers: &mut [Mover]) {
         for i in 0..LANES {
             if self.bodies[0][i] != self.bodies[1][i] {
                 self.give(i, movers, [&self.friction, &self.points[0], &self.points[1]].map(|row| row.impulse[i]));

@@ -1,0 +1,52 @@
+//! Which code solves blocks: the definition, or lanes side by side where the processor can. The bits are the same.
+
+#[cfg(target_arch = "x86_64")]
+use super::avx2::Avx2;
+use super::mover::Mover;
+use super::rows::Block;
+use super::scales::Scales;
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kernel {
+    /// One contact after the other.
+    Definition,
+    #[cfg(target_arch = "x86_64")]
+    Avx2(Avx2),
+}
+
+impl Default for Kernel {
+    /// The fastest that this processor has.
+    fn default() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(avx2) = Avx2::detect() {
+            return Kernel::Avx2(avx2);
+        }
+        Kernel::Definition
+    }
+}
+
+impl Kernel {
+    /// [`Block::solve`].
+    #[inline]
+    pub(super) fn solve<const BIASED: bool>(self, block: &mut Block, lanes: u8, movers: &mut [Mover], scales: &Scales) {
+        match self {
+            Kernel::Definition => block.solve::<BIASED>(lanes, movers, scales),
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx2(avx2) => {
+                let (blows, pushes) = avx2.sweep::<BIASED>(block, lanes, movers, scales);
+                block.pushes = pushes;
+                block.go_rounds::<BIASED>(blows, movers, scales);
+            }
+        }
+    }
+
+    /// [`Block::warm_start`].
+    #[inline]
+    pub(super) fn warm_start(self, block: &Block, movers: &mut [Mover]) {
+        match self {
+            Kernel::Definition => block.warm_start(movers),
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx2(avx2) => avx2.warm_start(block, movers),
+        }
+    }
+}

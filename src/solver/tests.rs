@@ -1,0 +1,195 @@
+//! Lanes side by side against the definition, to the bit.
+#![allow(clippy::arithmetic_side_effects, reason = "tests, not the engine")]
+
+use super::kernel::Kernel;
+use super::mover::Mover;
+use super::rows::{Block, LANES, Lane, Row};
+use super::scales::Scales;
+use crate::num::{lane, sin_cos};
+use crate::{Acceleration, Angle, BodyDef, BodyKind, ColliderDef, Commands, Length, Shape, Vec2, World, WorldDef};
+
+/// Numbers that follow from a seed: a linear congruential generator's upper bits (Knuth, MMIX).
+struct Dice(u64);
+
+impl Dice {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 ^ self.0 >> 33
+    }
+
+    fn one_in(&mut self, n: u64) -> bool {
+        (self.bits() >> 20) % n == 0
+    }
+
+    /// Of `low ..= high`: an end, a power of two or one beside it, something of any order of magnitude, or anything.
+    fn within(&mut self, low: i64, high: i64) -> i64 {
+        let any = (self.bits() as i64 >> (self.bits() >> 58)).clamp(low, high);
+        match self.bits() >> 61 {
+            0 => [low, high][usize::from(self.one_in(2))],
+            1 => 0i64.clamp(low, high),
+            3 => {
+                let power = (1i64 << (self.bits() >> 58).min(58)) + (self.bits() >> 33) as i64 % 3 - 1;
+                if self.one_in(2) { power.clamp(low, high) } else { (-power).clamp(low, high) }
+            }
+            2 => {
+                let width = i128::from(high) - i128::from(low) + 1;
+                (i128::from(low) + i128::from(self.bits()) % width) as i64
+            }
+            _ => any,
+        }
+    }
+
+    fn lane(&mut self, low: i64, high: i64) -> Lane {
+        [(); LANES].map(|()| self.within(low, high) as i32)
+    }
+
+    fn row(&mut self, impulse: [i64; 2]) -> Row {
+        const ANY: i64 = (1 << 31) - 1;
+        Row {
+            arm: [self.lane(-ANY, ANY), self.lane(-ANY, ANY)],
+            line: self.lane(0, 1 << 28),
+            turn: [self.lane(-ANY, ANY), self.lane(-ANY, ANY)],
+            impulse: self.lane(impulse[0], impulse[1]),
+        }
+    }
+
+    fn mover(&mut self, fast: i64, d: i64) -> Mover {
+        let mut v = || self.within(-fast, fast);
+        let [x, y, w] = [v(), v(), v()];
+        Mover { v: [x, y], w, phi: self.within(-d, d), d: [self.within(-d, d) as i32, self.within(-d, d) as i32] }
+    }
+
+    /// A block over movers of which the first does not move and the second goes its way whatever pushes it.
+    fn block(&mut self, separation: i64) -> Block {
+        let mut block = Block {
+            friction: self.row([-(1 << 29), 1 << 29]),
+            points: [self.row([0, 1 << 29]), self.row([0, 1 << 29])],
+            limit: [self.lane(0, i32::MAX.into()), self.lane(0, i32::MAX.into())],
+            separation: [self.lane(-separation, separation), self.lane(-separation, separation)],
+            peak: [self.lane(0, 1 << 29), self.lane(0, 1 << 29)],
+            couple: [(); 3].map(|()| self.lane(-(11 << 27), 11 << 27)),
+            ..Block::default()
+        };
+        for i in 0..LANES {
+            block.bodies = [[0, 1], [1, 0]].map(|side| {
+                let mut bodies = block.bodies[side[0]];
+                bodies[i] = 2 + 2 * i as u32 + side[0] as u32;
+                bodies
+            });
+            let (sin, cos) = sin_cos(Angle::from_bits(self.bits() as i64 >> 16));
+            let n = [cos, sin].map(|c| lane::round::<2>(c.into()) as i32);
+            let n = if self.one_in(4) { [0, -(1 << 28)] } else { n };
+            let share = self.within(0, 1 << 28);
+            for (axis, n) in n.into_iter().enumerate() {
+                block.normal[axis][i] = n;
+                let part = |share: i64| ((i64::from(n) * share) >> 28) as i32;
+                (block.reply[0][axis][i], block.reply[1][axis][i]) = (part(share), -part((1 << 28) - share));
+            }
+            if self.one_in(4) {
+                block.separation[1][i] = i32::MAX;
+            }
+            match self.bits() >> 61 {
+                0 => (block.bodies[0][i], block.bodies[1][i]) = (0, 0),
+                side @ 1..=4 => {
+                    // Against what impulses do not move.
+                    let body = side as usize % 2;
+                    block.bodies[body][i] = u32::from(side > 2);
+                    block.reply[body].iter_mut().for_each(|reply| reply[i] = 0);
+                    let rows = block.points.iter_mut().chain([&mut block.friction]);
+                    rows.for_each(|row| row.turn[body][i] = 0);
+                }
+                _ => {}
+            }
+        }
+        block
+    }
+}
+
+/// Which of the paths that matter were gone.
+#[derive(Debug, Default, PartialEq)]
+struct Seen {
+    blow: bool,
+    push: bool,
+    limited_velocity: bool,
+    limited_impulse: bool,
+    zero: bool,
+}
+
+fn compare<const BIASED: bool>(dice: &mut Dice, kernel: Kernel, scales: &Scales, seen: &mut Seen) {
+    // Ordinary numbers, or the ends of what the formats hold.
+    let (fast, far) = if dice.one_in(2) { (1 << 57, 1 << 30) } else { (1 << 50, 1 << 14) };
+    let mut movers: Vec<Mover> = (0..2 + 2 * LANES).map(|_| dice.mover(fast, far)).collect();
+    movers[0] = Mover::default();
+    let mut block = dice.block(far);
+    let (mut movers_2, mut block_2) = (movers.clone(), block.clone());
+    block.warm_start(&mut movers);
+    kernel.warm_start(&block, &mut movers_2);
+    assert_eq!(movers, movers_2, "from {block:#?}");
+    for _ in 0..3 {
+        let lanes = if dice.one_in(2) { u8::MAX } else { dice.bits() as u8 };
+        let before = block.clone();
+        block.solve::<BIASED>(lanes, &mut movers, scales);
+        kernel.solve::<BIASED>(&mut block_2, lanes, &mut movers_2, scales);
+        assert_eq!(block, block_2, "from {before:#?}");
+        assert_eq!(movers, movers_2);
+        for (now, before) in block.points.iter().zip(&before.points) {
+            for (now, before) in now.impulse.iter().zip(before.impulse) {
+                seen.blow |= (now - before).abs() > 1 << 14;
+                seen.limited_impulse |= *now == 1 << 29 && before != 1 << 29;
+                seen.zero |= *now == 0 && before > 0;
+            }
+        }
+        seen.push |= block.pushes != 0;
+        seen.limited_velocity |= movers.iter().any(|mover| mover.v[0].abs() == 1 << 57);
+    }
+}
+
+#[test]
+fn lanes_side_by_side_are_the_definition() {
+    let kernel = Kernel::default();
+    let mut dice = Dice(7);
+    let mut seen = [Seen::default(), Seen::default()];
+    for round in 0..20_000 {
+        let scales = match round % 3 {
+            0 => Scales::new(60, 10, 0),
+            1 => Scales::new(1000, 64, 10),
+            _ => Scales::new(15, 1, 3),
+        };
+        compare::<true>(&mut dice, kernel, &scales, &mut seen[0]);
+        compare::<false>(&mut dice, kernel, &scales, &mut seen[1]);
+    }
+    let all = Seen { blow: true, push: true, limited_velocity: true, limited_impulse: true, zero: true };
+    assert_eq!(seen, [Seen { ..all }, Seen { push: false, ..all }]);
+}
+
+/// Boxes of 1 m on the ground, at places in centimetres, in two worlds that are the same but for one using the definition.
+fn same_with_and_without(places: impl Iterator<Item = (i64, i64)>) {
+    let length = |cm: i64| Length::from_bits((cm << 32) / 100);
+    let gravity = Vec2::new(Acceleration::ZERO, "-9.81".parse().unwrap());
+    let mut world = World::new(&WorldDef { gravity, ..WorldDef::default() }).unwrap();
+    let mut create = |kind, (x, y), width| {
+        let shape = Shape::Box { width: length(width), height: length(100) };
+        let (position, colliders) = (Vec2::new(length(x), length(y)), vec![ColliderDef::new(shape)]);
+        world.create_body(&BodyDef { kind, position, colliders, ..BodyDef::default() }).unwrap();
+    };
+    create(BodyKind::Static, (0, -50), 10_000);
+    places.for_each(|at| create(BodyKind::Dynamic, at, 100));
+    let mut defined = world.clone();
+    defined.solver.kernel = Kernel::Definition;
+    for tick in 0..150 {
+        world.step();
+        defined.step();
+        assert_eq!(world.hash(), defined.hash(), "tick {tick}");
+    }
+    assert!(matches!(defined.solver.kernel, Kernel::Definition));
+}
+
+#[test]
+fn a_pyramid_has_the_same_hashes_without_lanes() {
+    same_with_and_without((0..12).flat_map(|row| (0..12 - row).map(move |i| (101 * i + 50 * row, 100 * row + 50))));
+}
+
+#[test]
+fn a_pile_has_the_same_hashes_without_lanes() {
+    same_with_and_without((0..60).map(|i| (i % 5 * 110 + i / 5 % 3 * 30, 200 + i / 5 * 140)));
+}
