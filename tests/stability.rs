@@ -6,8 +6,8 @@ mod common;
 mod solid;
 
 use common::{Rng, close, disc, position, rectangle, run, world};
-use solid::{add, fastest, fixed, polygon, scaled_world, solid, turned, worst_overlap};
-use tamias2d::{BodyDef, BodyId, World};
+use solid::{add, fastest, fixed, polygon, scaled_world, solid, turned, weighing, worst_overlap};
+use tamias2d::{BodyDef, BodyId, Bound, Commands, World};
 
 /// A floor whose top is at y = 0.
 fn floor(gy: f64) -> World {
@@ -96,11 +96,39 @@ fn a_pyramid_of_55_stands_a_minute() {
     assert!(fastest(&world) < 1e-4, "{} m/s", fastest(&world));
 }
 
+/// Boxes of 1 m and 1 kg on each other, but for the top one's mass.
+fn heavy_top(rows: u32, mass: f64) -> (World, Vec<BodyId>) {
+    let mut world = floor(-9.81);
+    let ids = (1..=rows).map(|row| {
+        let weight = if row == rows { mass } else { 1.0 };
+        add(&mut world, weighing(solid(0.0, f64::from(row) - 0.5, rectangle(1.0, 1.0)), weight))
+    });
+    let ids = ids.collect();
+    (world, ids)
+}
+
+#[test]
+fn a_heavy_top_stands_a_minute() {
+    for (rows, mass, most) in
+        [(2, 100.0, 0.01), (2, 1000.0, 0.03), (4, 100.0, 0.02), (10, 60.0, 0.04), (10, 200.0, 0.06)]
+    {
+        let (mut world, ids) = heavy_top(rows, mass);
+        let start = places(&world, &ids);
+        let side = stand(&mut world, &ids, &format!("{mass} kg on {} of 1 kg", rows - 1));
+        let (_, down) = drift(&world, &ids, &start);
+        assert!(side < 5e-3, "{mass} kg on {}: it moved {side} m sideways", rows - 1);
+        assert!(down < most, "{mass} kg on {}: it sagged by {down} m", rows - 1);
+        assert!(fastest(&world) < 2e-3, "{mass} kg on {}: {} m/s", rows - 1, fastest(&world));
+    }
+}
+
 /// A pile of boxes and polygons between walls, dropped from a grid.
 fn heap(count: u32, discs: bool, seed: u64) -> World {
     let (mut world, mut rng) = (floor(-9.81), Rng(seed));
     for x in [-9.0, 9.0] {
-        add(&mut world, fixed(x, 20.0, rectangle(2.0, 44.0)));
+        // To 42 m, or above the highest of them.
+        let top = (f64::from(count / 12) * 1.3 + 2.0).max(42.0);
+        add(&mut world, fixed(x, top / 2.0 - 1.0, rectangle(2.0, top + 2.0)));
     }
     for at in 0..count {
         let size = 0.4 + 0.5 * rng.unit();
@@ -118,17 +146,58 @@ fn heap(count: u32, discs: bool, seed: u64) -> World {
     world
 }
 
+/// Runs a pile for 20 s. While it falls a body may be struck so often in a tick that it runs into the bound of impacts,
+/// by chance; into no other, and later into none.
+fn settle(world: &mut World, name: &str) {
+    run(world, 8 * 60);
+    let entries = world.status().entries();
+    assert!(entries.iter().all(|entry| entry.bound == Bound::Impacts), "{name}: {entries:?}");
+    world.clear_status().expect("always accepted");
+    run(world, 12 * 60);
+    assert!(world.status().is_clear(), "{name}: {:?}", world.status());
+    assert!(world.bodies().all(|body| body.position().y.to_f64() > -2.1), "{name}: none fell through the floor");
+    world.check().expect("every invariant holds");
+}
+
 #[test]
 fn a_settled_pile_of_300_overlaps_less_than_2_cm() {
     for (discs, seed) in [(false, 1), (true, 2)] {
         let mut world = heap(300, discs, seed);
-        run(&mut world, 20 * 60);
+        settle(&mut world, "pile of 300");
         let overlap = worst_overlap(&world);
         println!("pile of 300, discs {discs}: overlap {overlap:.5} m, {:.1e} m/s", fastest(&world));
         assert!(overlap < 0.02, "it overlaps by {overlap} m");
-        assert!(world.bodies().all(|body| body.position().y.to_f64() > -2.1), "none fell through the floor");
-        assert!(world.status().is_clear(), "{:?}", world.status());
-        world.check().expect("every invariant holds");
+    }
+}
+
+/// A wide pile of discs, triangles and boxes from 25 cm to 1 m, so that light ones bear much.
+fn mixed_heap(count: u32, seed: u64) -> World {
+    let (mut world, mut rng) = (floor(-9.81), Rng(seed));
+    for x in [-16.0, 16.0] {
+        add(&mut world, fixed(x, 60.0, rectangle(2.0, 124.0)));
+    }
+    for at in 0..count {
+        let size = rng.scale(0.25, 1.0);
+        let shape = match rng.below(4) {
+            0 => disc(size * 0.5),
+            1 => polygon(&[(-0.5 * size, -0.4 * size), (0.5 * size, -0.4 * size), (0.0, 0.5 * size)]),
+            _ => rectangle(size, size * (0.5 + 0.5 * rng.unit())),
+        };
+        let (x, y) = (f64::from(at % 23) * 1.25 - 13.2 + 0.1 * rng.unit(), 1.0 + f64::from(at / 23) * 1.3);
+        add(&mut world, BodyDef { angle: turned(6.0 * rng.unit()), ..solid(x, y, shape) });
+    }
+    world
+}
+
+#[test]
+fn a_settled_pile_of_1000_overlaps_less_than_2_cm() {
+    let alike = [3].map(|seed| (heap(1000, true, seed), format!("alike, seed {seed}")));
+    let mixed = [1, 5, 6].map(|seed| (mixed_heap(1000, seed), format!("mixed, seed {seed}")));
+    for (mut world, name) in alike.into_iter().chain(mixed) {
+        settle(&mut world, &name);
+        let overlap = worst_overlap(&world);
+        println!("pile of 1000, {name}: overlap {overlap:.5} m, {:.1e} m/s", fastest(&world));
+        assert!(overlap < 0.02, "{name}: it overlaps by {overlap} m");
     }
 }
 

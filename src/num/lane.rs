@@ -91,6 +91,13 @@ pub(crate) const fn deeper(separation: i32, slop: i32) -> i32 {
     if separation < -slop { separation + slop } else { 0 }
 }
 
+/// A load of which what is beyond 4/3 of `firm` counts a quarter. Range: 0 ≤ load ≤ 2²⁹, 0 ≤ firm < 2³⁰.
+#[inline(always)]
+pub(crate) const fn eased(load: i32, firm: i32) -> i32 {
+    let less = (load >> 2) + firm;
+    if load < less { load } else { less }
+}
+
 /// `value` limited to `low ..= high`.
 #[inline(always)]
 pub(crate) const fn clamp(value: i64, low: i64, high: i64) -> i64 {

@@ -144,6 +144,12 @@ impl Narrow {
         Narrow(vector!(_mm256_abs_epi32(self.0)))
     }
 
+    /// Divided by 2^SHIFT, rounded down.
+    #[inline(always)]
+    pub(super) fn shifted<const SHIFT: i32>(self) -> Narrow {
+        Narrow(vector!(_mm256_srai_epi32::<SHIFT>(self.0)))
+    }
+
     #[inline(always)]
     pub(super) fn and(self, other: Narrow) -> Narrow {
         Narrow(vector!(_mm256_and_si256(self.0, other.0)))

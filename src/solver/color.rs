@@ -26,12 +26,12 @@ pub(crate) struct Colors {
 
 impl Colors {
     /// Colours contacts, given in order as the places of their two bodies. Static and kinematic bodies do not move by
-    /// contacts: `free` says, by place, that a body needs no colour of its own.
-    pub(crate) fn assign(&mut self, places: &[[u32; 2]], free: &[bool]) {
+    /// contacts: `free` says, by place, that a body needs no colour of its own. Within a colour the `heavy` ones sit
+    /// first: sweeps of their own then take few blocks.
+    pub(crate) fn assign(&mut self, places: &[[u32; 2]], free: &[bool], heavy: &[bool]) {
         self.used.clear();
         self.used.resize(free.len(), 0);
         self.color.clear();
-        self.seats.clear();
         let mut counts = [0usize; REST + 1];
         for &[a, b] in places {
             let (a_free, b_free) = (free[a as usize], free[b as usize]);
@@ -58,10 +58,15 @@ impl Colors {
             blocks = blocks.saturating_add(size);
         }
         self.blocks = blocks;
-        for &color in &self.color {
-            let color = color as usize;
-            self.seats.push(seats[color]);
-            seats[color] = seats[color].saturating_add(if color == REST { 8 } else { 1 });
+        self.seats.clear();
+        self.seats.resize(places.len(), 0);
+        for first in [true, false] {
+            let rows = self.seats.iter_mut().zip(&self.color).zip(heavy);
+            for ((seat, &color), _) in rows.filter(|&(_, &heavy)| heavy == first) {
+                let color = color as usize;
+                *seat = seats[color];
+                seats[color] = seats[color].saturating_add(if color == REST { 8 } else { 1 });
+            }
         }
     }
 }

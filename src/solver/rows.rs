@@ -59,6 +59,8 @@ pub(crate) struct Block {
     pub(crate) couple: [Lane; 3],
     /// By contact, from the lowest bit: whether a row pushed an overlap apart in the last sweep, instead of bearing a load.
     pub(crate) pushes: u8,
+    /// By contact, from the lowest bit: whether it is heavy, by the impulses of the last tick.
+    pub(crate) heavy: u8,
 }
 
 impl Default for Block {
@@ -75,6 +77,7 @@ impl Default for Block {
             peak: [NONE; 2],
             couple: [NONE; 3],
             pushes: 0,
+            heavy: 0,
         }
     }
 }
@@ -82,7 +85,7 @@ impl Default for Block {
 impl Block {
     /// Takes the contacts out: lanes keep their coefficients, but nothing reads them.
     pub(crate) fn clear(&mut self) {
-        (self.bodies, self.pushes) = ([[0; LANES]; 2], 0);
+        (self.bodies, self.pushes, self.heavy) = ([[0; LANES]; 2], 0, 0);
     }
 
     /// One sweep over the contacts whose bits are set: friction first, then the normals, which must hold. When `BIASED`,
@@ -240,7 +243,8 @@ impl Scales {
             if gap { (separation, self.close_rate) } else { (lane::deeper(separation, SLOP), self.push_rate) };
         let bias = (mul(way, rate) >> 20).max(self.push);
         let [mass, give] = if gap { [1 << 30, 0] } else { self.soft };
-        let give = mul(give, load);
+        // The greater the load, the less it yields.
+        let give = mul(give, lane::eased(load, self.firm));
         let answer = add(mul(mass, lane::limit(add(speed, bias))), give);
         // The speed with which the row would open if nothing opposed it; or there is hardly a load at all.
         let pushes = bias < 0 && (add(mul(mass, bias as i32), give) < PUSHES || impulse < LOAD);

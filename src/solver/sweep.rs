@@ -140,7 +140,8 @@ fn answer<const BIASED: bool>(
     let sum = speed.add(bias).sub(avx2.wide((1 << 43) + (1 << 35)));
     let sum = sum.min(avx2.wide(1 << 30)).max(avx2.wide(-(1 << 30)));
     let mass = gap.pick(avx2.narrow(1 << 30), avx2.narrow(scales.soft[0])).factor();
-    let give = gap.pick(zero, avx2.narrow(scales.soft[1])).factor().mul(load.factor());
+    let eased = load.min(load.shifted::<2>().add(avx2.narrow(scales.firm)));
+    let give = gap.pick(zero, avx2.narrow(scales.soft[1])).factor().mul(eased.factor());
     // At most 2³⁰, as mass and give are 1 together.
     let answer = mass.mul(sum.low()).add(give).round::<30>(avx2).narrow();
     let opens = avx2.wide(PUSHES).above(mass.mul(bias.low()).add(give)).mask();
