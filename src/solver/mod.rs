@@ -81,8 +81,20 @@ impl Solver {
     /// Rows for the pairs of this tick that touch or come near slowly, while the bodies are where it begins; what comes
     /// fast is left to strike.
     pub(crate) fn prepare(&mut self, touch: &mut Touch, contacts: &Contacts, bodies: &Bodies, drive: &Drive) {
-        let Solver { mobilities, scales, movers, before, free, places, heavy, fast, timeline, colors, blocks, kernel: _ } =
-            self;
+        let Solver {
+            mobilities,
+            scales,
+            movers,
+            before,
+            free,
+            places,
+            heavy,
+            fast,
+            timeline,
+            colors,
+            blocks,
+            kernel: _,
+        } = self;
         movers.clear(bodies.cold.len());
         timeline.clear(bodies.cold.len());
         places.clear();
