@@ -160,10 +160,15 @@ impl Broad {
 
     /// Brings the candidates up to date, once per tick.
     ///
-    /// `swept` gives a moving proxy's present box. `shift`, Q32 m, is how far moving proxies have commonly moved since
+    /// `swept` gives a moving proxy's present box; it is asked for each of them. `shift`, Q32 m, is how far moving proxies have commonly moved since
     /// the last update: any value is correct, a good one is fast. `wanted(a, b)`, a < b, says whether a pair is of
     /// interest; it is asked when a pair is found, which is not in every update.
-    pub(crate) fn update(&mut self, shift: [i64; 2], swept: impl Fn(u32) -> Aabb, wanted: impl Fn(u32, u32) -> bool) {
+    pub(crate) fn update(
+        &mut self,
+        shift: [i64; 2],
+        swept: impl FnMut(u32) -> Aabb,
+        wanted: impl Fn(u32, u32) -> bool,
+    ) {
         self.tick = self.tick.wrapping_add(1);
         self.advance(shift);
         self.sweep(shift, swept);
@@ -195,7 +200,7 @@ impl Broad {
     }
 
     /// Finds the moving proxies that are due, and gives them new fat boxes.
-    fn sweep(&mut self, shift: [i64; 2], swept: impl Fn(u32) -> Aabb) {
+    fn sweep(&mut self, shift: [i64; 2], mut swept: impl FnMut(u32) -> Aabb) {
         for slot in 0..self.states.len() {
             let mut state = self.states[slot];
             if state & KIND != MOVING {

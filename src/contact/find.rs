@@ -163,11 +163,13 @@ impl Touch {
             return;
         }
         let shift = common_way(bodies, margins.tick);
-        let proxies = &self.proxies;
+        let (proxies, boxes) = (&self.proxies, &mut self.boxes);
         let swept = |slot: u32| {
             let Proxy { body, reach } = proxies[slot as usize];
             let out = reach.saturating_add(margins.base);
-            sweep(bodies, drive, body as usize, [out.saturating_neg(); 2], [out; 2], margins.tick)
+            let around = sweep(bodies, drive, body as usize, [out.saturating_neg(); 2], [out; 2], margins.tick);
+            boxes[slot as usize] = around;
+            around
         };
         self.broad.update(shift, swept, |a, b| wanted(bodies, colliders, a as usize, b as usize));
 
@@ -175,12 +177,24 @@ impl Touch {
         let mut old = 0;
         for at in 0..self.broad.candidates().len() {
             let (a, b) = self.broad.candidates()[at];
-            self.place(a as usize, bodies, colliders, drive, margins);
-            self.place(b as usize, bodies, colliders, drive, margins);
-            if !self.boxes[a as usize].overlaps(&self.boxes[b as usize]) {
+            let body = [self.proxies[a as usize].body, self.proxies[b as usize].body];
+            let still = body.map(|slot| bodies.cold.value(slot as usize).kind == BodyKind::Static);
+            // First by what is known of a moving one without turning its outline.
+            if still[0] {
+                self.place(a as usize, true, bodies, colliders, margins);
+            }
+            if still[1] {
+                self.place(b as usize, true, bodies, colliders, margins);
+            }
+            let apart = |boxes: &[Aabb]| !boxes[a as usize].overlaps(&boxes[b as usize]);
+            if apart(&self.boxes) {
                 continue;
             }
-            let body = [self.proxies[a as usize].body, self.proxies[b as usize].body];
+            self.place(a as usize, still[0], bodies, colliders, margins);
+            self.place(b as usize, still[1], bodies, colliders, margins);
+            if apart(&self.boxes) {
+                continue;
+            }
             let Some(manifold) = self.meet([a as usize, b as usize], body, bodies, colliders, drive, margins) else {
                 continue;
             };
@@ -194,8 +208,9 @@ impl Touch {
         }
     }
 
-    /// The outline and the box of a collider in this tick.
-    fn place(&mut self, slot: usize, bodies: &Bodies, colliders: &Colliders, drive: &Drive, margins: Margins) {
+    /// The outline of a collider in this tick, and the box around its way: of a moving one less than the box in which it
+    /// may turn, which the broad phase was given.
+    fn place(&mut self, slot: usize, still: bool, bodies: &Bodies, colliders: &Colliders, margins: Margins) {
         if self.seen[slot] == self.now {
             return;
         }
@@ -203,13 +218,25 @@ impl Touch {
         let Proxy { body, reach } = self.proxies[slot];
         let at = body as usize;
         let placed = Placed::new(colliders.outline(slot), Rot::new(bodies.angle.get(at)));
-        // Turning moves no point farther than this, and none out of reach: so this box is within the one that the broad
-        // phase was given, or its history would decide what is found.
-        let rim = way(rim_speed(bodies.omega.get(at).to_bits(), reach), margins.tick);
-        let base = if bodies.cold.value(at).kind == BodyKind::Static { 0 } else { margins.base };
-        let min = placed.min.map(|m| m.saturating_sub(rim).max(reach.saturating_neg()).saturating_sub(base));
-        let max = placed.max.map(|m| m.saturating_add(rim).min(reach).saturating_add(base));
-        self.boxes[slot] = sweep(bodies, drive, at, min, max, margins.tick);
+        let around = &mut self.boxes[slot];
+        if still {
+            *around = self::around(bodies.position(at), placed.min, placed.max);
+        } else {
+            // Turning moves no point farther than this, and none out of reach: so this box is within the one that the broad
+            // phase was given, or its history would decide what is found.
+            let rim = way(rim_speed(bodies.omega.get(at).to_bits(), reach), margins.tick);
+            let spare = |out: i64| reach.saturating_sub(out.saturating_add(rim)).max(0);
+            let inward = |at: Length, by: i64| Length::from_bits(at.to_bits().saturating_add(by));
+            let Aabb { min, max } = around;
+            *min = Vec2::new(
+                inward(min.x, spare(placed.min[0].saturating_neg())),
+                inward(min.y, spare(placed.min[1].saturating_neg())),
+            );
+            *max = Vec2::new(
+                inward(max.x, spare(placed.max[0]).saturating_neg()),
+                inward(max.y, spare(placed.max[1]).saturating_neg()),
+            );
+        }
         self.placed[slot] = placed;
     }
 
