@@ -101,7 +101,8 @@ impl Solver {
         heavy.clear();
         fast.clear();
         for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !pair.sensor) {
-            if pair.manifold.count == 0 || strikes(pair, bodies, drive, scales, false) {
+            let swings = || swings(pair, bodies, drive, mobilities, scales);
+            if pair.manifold.count == 0 || strikes(pair, bodies, drive, scales, false) || swings() {
                 fast.push(at as u32);
             } else {
                 for slot in pair.bodies {
@@ -113,7 +114,9 @@ impl Solver {
         fast.retain(|&at| {
             let pair = &touch.pairs[at as usize];
             let among = pair.bodies.iter().all(|&slot| movers.place_of(slot) != 0);
-            !among || pair.manifold.count == 0 || pair.restitution > 0 && strikes(pair, bodies, drive, scales, true)
+            let strikes = || strikes(pair, bodies, drive, scales, true);
+            let swings = || swings(pair, bodies, drive, mobilities, scales);
+            !among || pair.manifold.count == 0 || pair.restitution > 0 && (strikes() || swings())
         });
         for &at in &*fast {
             let pair = &mut touch.pairs[at as usize];
@@ -240,6 +243,19 @@ fn fastest(pair: &Pair, between: [i64; 2], v: [i64; 2], omega: [i64; 2], gain: [
     let turning = [0, 1].map(|body: usize| mul(omega[body].saturating_abs(), arms[body], 32));
     // 16 for the roundings of both.
     turning.into_iter().chain(v).chain(gain.into_iter().flatten()).fold(16, add)
+}
+
+/// Whether a near pair turns so fast, and nothing presses it together, that another corner may swing in across the gap, of
+/// which rows would not know. Under forces rows have it all the same: what is to come to rest must be theirs.
+fn swings(pair: &Pair, bodies: &Bodies, drive: &Drive, mobilities: &[Mobility], scales: &Scales) -> bool {
+    let rim = |slot: u32| {
+        let omega = bodies.omega.get(slot as usize).to_bits().saturating_abs();
+        mul(omega, mobilities[slot as usize].reach, 32)
+    };
+    let points = &pair.manifold.points[..pair.manifold.count as usize];
+    points.iter().all(|point| point.separation > scales.touching)
+        && rim(pair.bodies[0]).saturating_add(rim(pair.bodies[1])) > scales.swinging()
+        && pair.bodies.iter().all(|&slot| drive.gain(slot as usize, scales.margins.tick) == [0; 2])
 }
 
 /// Whether a near pair comes together so fast that it strikes.

@@ -153,6 +153,11 @@ impl Scales {
         }
     }
 
+    /// The speed of rims from which on what touches elsewhere may follow, Q48 m/s: 1 m/s, 2 cm in a tick.
+    pub(crate) fn swinging(&self) -> i64 {
+        SPEED << self.shift
+    }
+
     /// How fast contacts separate that are at rest all the same, Q48 m/s: 1 mm/s.
     pub(crate) fn still(&self) -> i64 {
         (SPEED / 1000) << self.shift

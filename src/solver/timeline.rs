@@ -55,8 +55,9 @@ struct Engaged {
     pair: u32,
     /// Whether it has rows.
     held: bool,
-    /// How often it was answered.
+    /// How often it was answered, and how often it only seemed to meet.
     answers: u32,
+    misses: u32,
     /// How far they may overlap already, Q32 m.
     depth: i64,
     /// The least speed of approach that is answered, Q48 m/s.
@@ -72,7 +73,9 @@ struct Engaged {
 
 /// C_R = 1.
 const ONE: i64 = 1 << 48;
-/// When what only seemed to meet is looked at again: 1/64 of a tick later.
+/// When what only seemed to meet is looked at again: when it may have moved by 0.1 mm, Q32 m, and twice as far each time;
+/// 1/64 of a tick later at most.
+const LEAP: i64 = 429_497;
 const LATER: i64 = TICK >> 6;
 const NEVER: i64 = i64::MAX;
 /// As a place among the pairs of the tick: one of those that were not among them.
@@ -182,6 +185,7 @@ impl Timeline {
             pair,
             held,
             answers: 0,
+            misses: 0,
             depth,
             least,
             restitution,
@@ -199,9 +203,12 @@ impl Timeline {
         pair.time = NEVER;
         let [a, b] = pair.flights.map(|place| &self.flights.list[place as usize]);
         let strikes = a.strikes.max(b.strikes);
-        if strikes >= MOST || pair.held && strikes >= PASSED_ON && pair.restitution < ONE {
+        if strikes >= MOST {
             return;
         }
+        // What is passed on often, rows take: but for what is too fast for them.
+        let passed = pair.held && strikes >= PASSED_ON && pair.restitution < ONE;
+        let least = if passed { pair.least.max(scales.least_strike(0, true)) } else { pair.least };
         let from = from.max(a.time).max(b.time);
         let until = if a.pushed || b.pushed { end } else { TICK };
         if from > until {
@@ -210,7 +217,7 @@ impl Timeline {
         let (p, q) = (a.at(from, scales), b.at(from, scales));
         let motion = motion(&p, &q, [&a.gain, &b.gain], scales);
         let rest = until.saturating_sub(from);
-        let closing = mul(pair.least, scales.margins.tick, 71);
+        let closing = mul(least, scales.margins.tick, 71);
         let [one, other] = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
         if motion.fastest([one.reach, other.reach], rest) < closing || pair.clearance.lasts(&motion, rest) {
             return;
@@ -390,15 +397,18 @@ impl Timeline {
     /// Whether bodies with rows are so slow that these take whatever comes together.
     fn is_slow(&self, bodies: [u32; 2], pair: u32, stage: &Stage<'_>) -> bool {
         let restitution = stage.touch.pairs[pair as usize].restitution;
+        self.fastest(bodies, stage) < stage.scales.least_strike(restitution, stage.bears(pair))
+    }
+
+    /// A bound of the speed of points of two bodies against each other, Q48 m/s.
+    fn fastest(&self, bodies: [u32; 2], stage: &Stage<'_>) -> i64 {
         let [a, b] = bodies.map(|slot| {
             let at = slot as usize;
             let state = self.flights.known(at).map_or_else(|| self.past.state(at), |flight| flight.state);
-            let mobility = &stage.mobilities[at];
-            (state.v, mul(state.omega.saturating_abs(), mobility.reach, 32))
+            (state.v, mul(state.omega.saturating_abs(), stage.mobilities[at].reach, 32))
         });
         let line = [0, 1].map(|axis: usize| a.0[axis].saturating_sub(b.0[axis]).saturating_abs());
-        let most = line[0].saturating_add(line[1]).saturating_add(a.1).saturating_add(b.1);
-        most < stage.scales.least_strike(restitution, stage.bears(pair))
+        line[0].saturating_add(line[1]).saturating_add(a.1).saturating_add(b.1)
     }
 
     /// A box around the way of a collider: its body's own, or where impacts sent that.

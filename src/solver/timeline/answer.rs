@@ -4,12 +4,12 @@ use super::super::flight::{Flight, NONE, State, rim};
 use super::super::mover::Movers;
 use super::super::scales::weight;
 use super::super::strike::{Strike, solve};
-use super::{Engaged, FLAT, LATE, LATER, MANY, MOST, NEVER, OFTEN, ONE, REACH, Stage, Timeline};
+use super::{Engaged, FLAT, LATE, LATER, LEAP, MANY, MOST, NEVER, OFTEN, ONE, REACH, Stage, Timeline};
 use crate::contact::{Collision, Pace};
 use crate::geom::{Rot, Vec2};
 use crate::motion::{Bound, Fault};
 use crate::narrow::{Manifold, collide};
-use crate::num::{Angle, AngularVelocity, Velocity, add_sat, lane::next, round_shift};
+use crate::num::{Angle, AngularVelocity, Velocity, add_sat, lane::next, mul, round_shift};
 use crate::shape::Placed;
 
 /// So many contacts are answered together at most, but for those that meet at one time.
@@ -22,11 +22,16 @@ impl Timeline {
         self.begin(time, stage);
         if self.strikes.is_empty() {
             // What comes nearer lies beside what it would meet, as a corner over the end of an edge.
-            let later = time.saturating_add(LATER);
             for at in 0..self.group.len() {
                 let at = self.group[at] as usize;
-                self.engaged[at].depth = stage.scales.slack;
-                self.foresee(at, later, span[1], stage);
+                let bodies = self.engaged[at].flights.map(|place| self.flights.list[place as usize].slot);
+                let speed = mul(self.fastest(bodies, stage), stage.scales.margins.tick, 79).max(1);
+                let pair = &mut self.engaged[at];
+                let leap = (LEAP << 32).checked_div(speed).unwrap_or(0).clamp(1, LATER);
+                let leap = leap.saturating_mul(1 << pair.misses.min(10)).min(LATER);
+                pair.misses = pair.misses.saturating_add(1);
+                pair.depth = stage.scales.slack;
+                self.foresee(at, time.saturating_add(leap), span[1], stage);
             }
             return;
         }
