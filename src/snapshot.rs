@@ -8,10 +8,10 @@ use crate::store::{DecodeError, Diff, Difference, Hasher, Reader, Record, put};
 
 const MAGIC: &[u8; 8] = b"TAMIAS-W";
 /// The format version of saved worlds.
-pub const SAVE_VERSION: u32 = 2;
+pub const SAVE_VERSION: u32 = 3;
 /// The arithmetic law: what every number, rounding and order of operations is. Worlds of two laws continue
 /// differently, so a build refuses other laws.
-pub const LAW: u32 = 3;
+pub const LAW: u32 = 4;
 
 /// The hash of one part of a world's state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

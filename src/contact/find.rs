@@ -5,12 +5,13 @@
 
 use super::event::{Event, EventKind};
 use super::row::{Contact, Contacts};
+use super::ways::{along, around, common_way, rim_speed, sweep, way};
 use crate::body::{Bodies, BodyKind, Colliders};
 use crate::broad::Broad;
 use crate::geom::{Aabb, Rot, Vec2};
 use crate::motion::Drive;
 use crate::narrow::{Manifold, near, overlap};
-use crate::num::{Length, add_sat, cross, dot, mul};
+use crate::num::{Length, cross, dot, mul};
 use crate::shape::Placed;
 
 /// How far ahead contacts are looked for.
@@ -20,11 +21,6 @@ pub(crate) struct Margins {
     pub(crate) base: i64,
     /// The tick in seconds, 63 fraction bits.
     pub(crate) tick: i64,
-}
-
-/// A velocity's way in a tick, Q32 m.
-fn way(velocity: i64, tick: i64) -> i64 {
-    mul(velocity, tick, 48 + 63 - 32)
 }
 
 /// No contact of the last tick.
@@ -381,7 +377,7 @@ impl Touch {
                 (true, false) => end(before, events),
                 _ => {}
             }
-            if contact.touching || contact.normal != [0; 2] || contact.tangent != [0; 2] {
+            if contact.touching || contact.normal != [0; 2] || contact.tangent != 0 {
                 next.push(&contact);
             }
         }
@@ -400,48 +396,4 @@ fn wanted(bodies: &Bodies, colliders: &Colliders, a: usize, b: usize) -> bool {
     }
     let dynamic = |body: u32| bodies.cold.value(body as usize).is_dynamic();
     a.sensor || b.sensor || dynamic(a.body) || dynamic(b.body)
-}
-
-/// The speed of a point at `reach` of a body that turns with `omega`, Q48 m/s.
-fn rim_speed(omega: i64, reach: i64) -> i64 {
-    mul(omega.saturating_abs(), reach, 32)
-}
-
-/// The box from `min` to `max` about a point.
-fn around(point: Vec2<Length>, min: [i64; 2], max: [i64; 2]) -> Aabb {
-    let at = |p: Length, by: i64| Length::from_bits(p.to_bits().saturating_add(by));
-    Aabb {
-        min: Vec2::new(at(point.x, min[0]), at(point.y, min[1])),
-        max: Vec2::new(at(point.x, max[0]), at(point.y, max[1])),
-    }
-}
-
-/// The box around a box from `min` to `max` about a body and its way in this tick.
-fn sweep(bodies: &Bodies, drive: &Drive, body: usize, min: [i64; 2], max: [i64; 2], tick: i64) -> Aabb {
-    let v = [bodies.vx.bits()[body], bodies.vy.bits()[body]];
-    along(bodies.position(body), v, drive.gain(body, tick), min, max, tick)
-}
-
-/// The box around a box from `min` to `max` about a point that moves for a tick: with a velocity and what it gains, Q48.
-fn along(at: Vec2<Length>, v: [i64; 2], gain: [i64; 2], min: [i64; 2], max: [i64; 2], tick: i64) -> Aabb {
-    // A parabola lies within the triangle of its ends and where its first velocity leads in half of the tick.
-    let half = v.map(|v| way(v, tick) / 2);
-    let whole = [0, 1].map(|axis: usize| way(add_sat(v[axis], gain[axis] / 2), tick));
-    let stretch = |bound: [i64; 2], pick: fn(i64, i64) -> i64| {
-        let out = |axis: usize| bound[axis].saturating_add(pick(pick(half[axis], whole[axis]), 0));
-        [out(0), out(1)]
-    };
-    around(at, stretch(min, i64::min), stretch(max, i64::max))
-}
-
-/// About how far the bodies go together in this tick: a hint for the broad phase.
-fn common_way(bodies: &Bodies, tick: i64) -> [i64; 2] {
-    let mean = |column: &[i64]| {
-        let (sum, moving) = column
-            .iter()
-            .filter(|&&v| v != 0)
-            .fold((0i128, 0i128), |(sum, n), &v| (sum.saturating_add(v.into()), n.saturating_add(1)));
-        sum.checked_div(moving).unwrap_or(0) as i64
-    };
-    [way(mean(bodies.vx.bits()), tick), way(mean(bodies.vy.bits()), tick)]
 }

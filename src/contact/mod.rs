@@ -3,6 +3,7 @@
 mod event;
 mod find;
 mod row;
+mod ways;
 
 pub use event::{Collision, Event, EventKind, Pace};
 pub(crate) use find::{Margins, NEW, Pair, Touch};

@@ -22,12 +22,11 @@ pub(crate) struct Contact {
     pub(crate) ids: [u8; 2],
     /// The impulse of each point along the normal, not negative.
     pub(crate) normal: [i64; 2],
-    /// The impulse along the tangent, which is the normal turned counter-clockwise. A contact has one, the first; the
-    /// second is zero.
-    pub(crate) tangent: [i64; 2],
+    /// The impulse along the tangent, which is the normal turned counter-clockwise.
+    pub(crate) tangent: i64,
 }
 
-const WORDS: usize = 7;
+const WORDS: usize = 6;
 
 impl Contact {
     /// As 64-bit words: ids, then flags, count and features by bytes from the lowest, then impulses.
@@ -36,11 +35,10 @@ impl Contact {
         let id = |id: &ColliderId| u64::from(id.generation) << 32 | u64::from(id.index);
         let flags = [u8::from(*touching), u8::from(*sensor), *count, ids[0], ids[1], 0, 0, 0];
         let [n0, n1] = normal.map(|bits| bits as u64);
-        let [t0, t1] = tangent.map(|bits| bits as u64);
-        [id(a), id(b), u64::from_le_bytes(flags), n0, n1, t0, t1]
+        [id(a), id(b), u64::from_le_bytes(flags), n0, n1, *tangent as u64]
     }
 
-    fn unpack([a, b, flags, n0, n1, t0, t1]: [u64; WORDS]) -> Contact {
+    fn unpack([a, b, flags, n0, n1, tangent]: [u64; WORDS]) -> Contact {
         let id = |word: u64| ColliderId { index: word as u32, generation: (word >> 32) as u32 };
         let flags = flags.to_le_bytes();
         Contact {
@@ -51,7 +49,7 @@ impl Contact {
             count: flags[2],
             ids: [flags[3], flags[4]],
             normal: [n0 as i64, n1 as i64],
-            tangent: [t0 as i64, t1 as i64],
+            tangent: tangent as i64,
         }
     }
 
@@ -63,14 +61,14 @@ impl Contact {
     /// Whether it could be of a tick of this engine; what is wrong, if not.
     fn check(&self) -> Result<(), &'static str> {
         let used = self.count as usize;
-        let unused = (used.min(2)..2).all(|i| self.ids[i] == 0 && self.normal[i] == 0 && self.tangent[i] == 0);
+        let unused = (used.min(2)..2).all(|i| self.ids[i] == 0 && self.normal[i] == 0);
+        let unused = unused && (used > 0 || self.tangent == 0);
         let bounded = |bits: i64| bits.unsigned_abs() <= 1 << 60;
         let normals = self.normal.iter().all(|&n| n >= 0 && bounded(n));
-        if used > 2 || !unused || !normals || !self.tangent.iter().all(|&t| bounded(t)) || self.a.index >= self.b.index
-        {
+        if used > 2 || !unused || !normals || !bounded(self.tangent) || self.a.index >= self.b.index {
             return Err("has a contact that no step makes");
         }
-        let pushes = self.normal != [0; 2] || self.tangent != [0; 2];
+        let pushes = self.normal != [0; 2] || self.tangent != 0;
         // An impact touches without points.
         let reason = if self.sensor { self.touching && used == 0 } else { self.touching || used > 0 && pushes };
         if !reason {
@@ -178,13 +176,13 @@ impl Record for Contacts {
                 d.field("touching", |d| a.touching.diff(&b.touching, d));
                 d.field("sensor", |d| a.sensor.diff(&b.sensor, d));
                 d.field("count", |d| a.count.diff(&b.count, d));
+                let velocity = crate::num::Velocity::from_bits;
+                d.field("tangent", |d| velocity(a.tangent).diff(&velocity(b.tangent), d));
                 for i in 0..2 {
                     d.field("points", |d| {
                         d.element(i, |d| {
                             d.field("id", |d| a.ids[i].diff(&b.ids[i], d));
-                            let velocity = crate::num::Velocity::from_bits;
                             d.field("normal", |d| velocity(a.normal[i]).diff(&velocity(b.normal[i]), d));
-                            d.field("tangent", |d| velocity(a.tangent[i]).diff(&velocity(b.tangent[i]), d));
                         });
                     });
                 }

@@ -227,7 +227,7 @@ impl Solver {
             contact.touching |= block.peak[at][i] > 0 || manifold.points[at].separation <= 0;
         }
         contact.normal = [0, 1].map(|at| block.points[at].carried(i));
-        contact.tangent[0] = block.friction.carried(i);
+        contact.tangent = block.friction.carried(i);
         contact
     }
 }

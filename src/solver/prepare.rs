@@ -89,7 +89,7 @@ impl<'p> Joint<'p> {
         for (at, arms) in arms.iter().enumerate() {
             let normal = arms.map_or(Lever::default(), |[arm, _]| self.lever(arm));
             let known = points.get(at).and_then(|point| (0..old.count as usize).find(|&k| old.ids[k] == point.id));
-            carried = if known.is_some() { old.tangent[0] } else { carried };
+            carried = if known.is_some() { old.tangent } else { carried };
             let line = block.points[at].put(i, &normal, known.map_or(0, |k| old.normal[k]));
             let ratio = lane::scale(line, tangent.kappa);
             block.limit[at][i] = mul(ratio, friction, 48).min(i32::MAX.into()) as i32;

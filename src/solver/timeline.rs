@@ -8,8 +8,9 @@
 //! Source: conservative advancement after Mirtich (1996); time-ordered events with local body times.
 
 mod answer;
+mod neighbours;
 
-use super::flight::{Flight, Flights, NONE, Past, State, TICK, motion};
+use super::flight::{Flights, NONE, Past, State, TICK, motion};
 use super::mobility::Mobility;
 use super::mover::Movers;
 use super::rows::{Block, LANES};
@@ -17,7 +18,6 @@ use super::scales::Scales;
 use super::strike::{Speed, Strike};
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Touch};
-use crate::geom::Aabb;
 use crate::motion::{Drive, Fault};
 use crate::narrow::{Clearance, first_touch};
 use crate::num::{lane::next, mul};
@@ -315,21 +315,6 @@ impl Timeline {
         place
     }
 
-    /// Looks again when the pairs of a body that was struck meet.
-    fn look_again(&mut self, place: usize, from: i64, to: i64, stage: &Stage<'_>) {
-        let mut at = self.flights.list[place].first;
-        while at != NONE {
-            let Engaged { flights, next, .. } = self.engaged[at as usize];
-            let side = usize::from(flights[0] as usize != place);
-            // Of two that one answer changed, the first has looked at their pair.
-            if self.flights.list[flights[1 ^ side] as usize].looked != self.order {
-                self.foresee(at as usize, from, to, stage);
-            }
-            at = next[side];
-        }
-        self.flights.list[place].looked = self.order;
-    }
-
     /// Of what is left of the batch the first pair, and what hangs together with it by bodies that move, in order; false if
     /// nothing is.
     fn gather(&mut self, stage: &Stage<'_>) -> bool {
@@ -358,79 +343,5 @@ impl Timeline {
         }
         group.sort_unstable_by_key(|&at| engaged[at as usize].colliders);
         true
-    }
-
-    /// A body that was struck goes another way: whom it may meet there. `around`: a box about that.
-    fn meet_again(&mut self, place: usize, time: i64, to: i64, stage: &Stage<'_>, movers: &Movers) {
-        let Stage { bodies, colliders, touch, .. } = *stage;
-        let Flight { slot, around, .. } = self.flights.list[place];
-        let (mut found, mut known) = (core::mem::take(&mut self.found), core::mem::take(&mut self.known));
-        found.clear();
-        touch.around(&around, |collider| found.push(collider));
-        for &other in &self.struck {
-            let Flight { slot, around: other, .. } = self.flights.list[other as usize];
-            if other.overlaps(&around) {
-                found.extend(colliders.list(bodies.cold.value(slot as usize).first).map(|at| at as u32));
-            }
-        }
-        found.sort_unstable();
-        found.dedup();
-        self.pairs_of(place, &mut known);
-        for own in colliders.list(bodies.cold.value(slot as usize).first) {
-            for &other in &found {
-                let (a, b) = (other.min(own as u32), other.max(own as u32));
-                // Exactly, so that what the broad phase hands out besides has no say.
-                if a == b || !self.way(other, stage).overlaps(&around) || known.contains(&[a, b]) {
-                    continue;
-                }
-                let (pair, held) = touch.pair_of([a, b]);
-                let of = [a, b].map(|at| colliders.rows.value(at as usize).body);
-                if !(held && self.is_slow(of, pair, stage)) && touch.may_strike([a, b], bodies, colliders) {
-                    self.add([a, b], of, pair, held, stage, movers);
-                }
-            }
-        }
-        (self.found, self.known) = (found, known);
-        self.look_again(place, time, to, stage);
-    }
-
-    /// Whether bodies with rows are so slow that these take whatever comes together.
-    fn is_slow(&self, bodies: [u32; 2], pair: u32, stage: &Stage<'_>) -> bool {
-        let restitution = stage.touch.pairs[pair as usize].restitution;
-        self.fastest(bodies, stage) < stage.scales.least_strike(restitution, stage.bears(pair))
-    }
-
-    /// A bound of the speed of points of two bodies against each other, Q48 m/s.
-    fn fastest(&self, bodies: [u32; 2], stage: &Stage<'_>) -> i64 {
-        let [a, b] = bodies.map(|slot| {
-            let at = slot as usize;
-            let state = self.flights.known(at).map_or_else(|| self.past.state(at), |flight| flight.state);
-            (state.v, mul(state.omega.saturating_abs(), stage.mobilities[at].reach, 32))
-        });
-        let line = [0, 1].map(|axis: usize| a.0[axis].saturating_sub(b.0[axis]).saturating_abs());
-        line[0].saturating_add(line[1]).saturating_add(a.1).saturating_add(b.1)
-    }
-
-    /// A box around the way of a collider: its body's own, or where impacts sent that.
-    fn way(&self, collider: u32, stage: &Stage<'_>) -> Aabb {
-        let body = stage.colliders.rows.value(collider as usize).body as usize;
-        match self.flights.known(body) {
-            Some(flight) if flight.strikes > 0 => flight.around,
-            _ => {
-                let (State { x, v, .. }, margins) = (self.past.state(body), stage.scales.margins);
-                stage.touch.way(collider as usize, x, v, stage.drive.gain(body, margins.tick), margins)
-            }
-        }
-    }
-
-    /// The colliders of all pairs of a body.
-    fn pairs_of(&self, place: usize, pairs: &mut Vec<[u32; 2]>) {
-        pairs.clear();
-        let mut at = self.flights.list[place].first;
-        while at != NONE {
-            let pair = &self.engaged[at as usize];
-            pairs.push(pair.colliders);
-            at = pair.next[usize::from(pair.flights[0] as usize != place)];
-        }
     }
 }
