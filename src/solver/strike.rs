@@ -20,7 +20,7 @@ pub(crate) type Speed = [i64; 3];
 
 const LIMIT: i64 = 1 << 61;
 /// How often contacts are gone through at most, if one is elastic until no impulse changes any more; else until none does
-/// by more than a 2²²th of the fastest approach: what is left then is met again.
+/// by more than a 2²⁶th of the fastest approach: what is left then is met again.
 const ROUNDS: [u32; 2] = [32, 256];
 /// C_R = 1.
 const ONE: i64 = 1 << 48;
@@ -341,28 +341,34 @@ fn give(bodies: [usize; 2], share: [i64; 2], row: &Row, impulse: i64, speeds: &m
 /// Solves the contacts, in their order, until no impulse changes any more. `restitutions`: C_R of each, Q48.
 ///
 /// No impulse pulls, friction stays within Coulomb's cone, and energy does not grow: Newton's rule with friction can add
-/// energy (Kane 1984); then the contacts are answered without restitution, and if need be without friction.
+/// energy (Kane 1984); then the contacts are answered without restitution, and if need be without friction. Where elastic
+/// contacts that say nearly the same do not come to an end, the fastest is answered alone: the others meet again.
 pub(crate) fn solve(strikes: &mut [Strike], restitutions: &[i64], speeds: &mut [Speed], before: &mut Vec<Speed>) {
     before.clear();
     before.extend_from_slice(speeds);
     let elastic = restitutions.iter().any(|&restitution| restitution >= ONE);
-    let approach = strikes.iter().fold(0, |least, strike| strike.approach(speeds).min(least));
-    let enough = if elastic { 1 } else { (approach.saturating_neg() >> 22).max(1) };
+    let approach = strikes.iter().map(|strike| strike.approach(speeds));
+    let (fastest, approach) = approach.enumerate().min_by_key(|&(_, approach)| approach).unwrap_or((0, 0));
+    let enough = if elastic { 1 } else { (approach.saturating_neg() >> 26).max(1) };
     for attempt in 0..3 {
         for (strike, &restitution) in strikes.iter_mut().zip(restitutions) {
             strike.forget();
             strike.aim(before, if attempt == 0 { restitution } else { 0 });
             strike.rough = if attempt < 2 { strike.rough } else { 0 };
         }
-        for _ in 0..ROUNDS[usize::from(elastic)] {
-            let sweep = strikes.iter_mut().map(|strike| strike.sweep(speeds));
-            if sweep.fold(0, i64::max) <= enough {
-                break;
-            }
+        if !rounds(strikes, speeds, enough, ROUNDS[usize::from(elastic)]) && elastic {
+            speeds.copy_from_slice(before);
+            strikes.iter_mut().for_each(Strike::forget);
+            rounds(&mut strikes[fastest..=fastest], speeds, 1, ROUNDS[1]);
         }
         if strikes.iter().all(|strike| strike.rough == 0 || !strike.gains(before, speeds)) {
             return;
         }
         speeds.copy_from_slice(before);
     }
+}
+
+/// Goes through contacts until no impulse changes by more than `enough`; false if that takes more rounds than `most`.
+fn rounds(strikes: &mut [Strike], speeds: &mut [Speed], enough: i64, most: u32) -> bool {
+    (0..most).any(|_| strikes.iter_mut().map(|strike| strike.sweep(speeds)).fold(0, i64::max) <= enough)
 }
