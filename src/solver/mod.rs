@@ -184,6 +184,10 @@ impl Solver {
                 }
                 movers.drift(scales);
                 timeline.run(scales.span(substep), &Stage { blocks, ..stage }, movers, faults);
+                for pair in timeline.retired.drain(..) {
+                    let seat = colors.seats[touch.pairs[pair as usize].row as usize] as usize;
+                    blocks[seat / LANES].retire(seat % LANES);
+                }
                 let all = substep % RELAX == 0 || substep == scales.substeps;
                 for block in &mut *blocks {
                     let lanes = if all { u8::MAX } else { block.pushes | block.heavy };

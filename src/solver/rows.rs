@@ -88,6 +88,11 @@ impl Block {
         (self.bodies, self.pushes, self.heavy) = ([[0; LANES]; 2], 0, 0);
     }
 
+    /// Takes one contact out.
+    pub(crate) fn retire(&mut self, i: usize) {
+        (self.bodies[0][i], self.bodies[1][i]) = (0, 0);
+    }
+
     /// One sweep over the contacts whose bits are set: friction first, then the normals, which must hold. When `BIASED`,
     /// overlaps are pushed apart through the soft rows; else the rows only stop what approaches.
     #[inline(never)]

@@ -94,6 +94,12 @@ pub(crate) struct Stage<'s> {
 }
 
 impl Stage<'_> {
+    /// Whether a pair has no point that touches.
+    fn is_apart(&self, pair: u32) -> bool {
+        let manifold = self.touch.pairs.get(pair as usize).map(|pair| &pair.manifold);
+        manifold.is_some_and(|m| m.points[..m.count as usize].iter().all(|p| p.separation > self.scales.touching))
+    }
+
     /// Whether the rows of a pair bear a load now.
     fn bears(&self, pair: u32) -> bool {
         let row = self.touch.pairs.get(pair as usize).map_or(NONE, |pair| pair.row);
@@ -117,6 +123,8 @@ pub(crate) struct Timeline {
     pub(crate) late: Vec<[[u32; 2]; 2]>,
     /// Places of those of the tick that met.
     pub(crate) met: Vec<u32>,
+    /// Pairs whose rows are out for the rest of the tick.
+    pub(crate) retired: Vec<u32>,
     /// What happened, and how many answers there were.
     pub(crate) collisions: Vec<Collision>,
     order: u32,
@@ -143,6 +151,7 @@ impl Timeline {
         self.struck.clear();
         self.late.clear();
         self.met.clear();
+        self.retired.clear();
         self.collisions.clear();
         self.order = 0;
     }
@@ -175,6 +184,11 @@ impl Timeline {
         let friction = a.friction.combine(b.friction).to_bits();
         let list = &mut self.flights.list;
         let next = flights.map(|place| core::mem::replace(&mut list[place as usize].first, at as u32));
+        // Rows would stop what was struck as it crosses a gap. What does not bounce is theirs.
+        let free = held && restitution > 0 && !stage.bears(pair) && stage.is_apart(pair);
+        if free {
+            self.retired.push(pair);
+        }
         let least = stage.scales.least_strike(restitution, held && stage.bears(pair));
         let depth = stage.touch.pairs.get(pair as usize).map_or(0, |pair| pair.depth);
         self.engaged.push(Engaged {
@@ -183,7 +197,7 @@ impl Timeline {
             time: NEVER,
             next,
             pair,
-            held,
+            held: held && !free,
             answers: 0,
             misses: 0,
             depth,
