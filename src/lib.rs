@@ -17,6 +17,7 @@
 //! | `world` | the world, its step, its commands, its queries |
 //! | `snapshot` | save, load, hash, diff |
 //! | [`replay`] | recording, playing, verifying |
+//! | [`guide`] | chapters: what is promised, and why |
 // Allowed in solver/avx2.rs alone.
 #![deny(unsafe_code, clippy::undocumented_unsafe_blocks)]
 #![deny(missing_docs, clippy::arithmetic_side_effects)]
@@ -25,6 +26,7 @@ mod body;
 mod broad;
 mod contact;
 pub mod geom;
+pub mod guide;
 mod motion;
 mod narrow;
 pub mod num;

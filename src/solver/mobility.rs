@@ -5,6 +5,7 @@
 //! ratio: κ = k/S = 1 + p_a·τ_a·α_a² + p_b·τ_b·α_b², a body's velocity changes by p·d·(λ̂/κ) and its w by p·τ·α·(λ̂/κ). So any
 //! mass and size fits 32 bits, and only ratios of masses matter.
 
+use super::strike::Weight;
 use crate::body::{BodyData, BodyKind, gyration};
 use crate::num::{div, lane, mul_div, round_shift};
 
@@ -65,6 +66,12 @@ impl Mobility {
         let scale_shift = (sigma.ilog2() as i32).saturating_sub(28);
         let scale = div(1 << 58, lane::shifted(sigma, scale_shift).into()) as i64;
         Mobility { mantissa, exponent, sigma, tau, tau_fine, inverse, inverse_shift, scale, scale_shift, reach, fixed }
+    }
+
+    /// What its speeds weigh: w² as much as ω²·I/(m·σ²) = w²/τ.
+    pub(crate) fn weight(&self) -> Weight {
+        let turning = if self.tau_fine > 0 { div(1 << 96, self.tau_fine.into()) as i64 } else { 0 };
+        Weight { mantissa: self.mantissa, exponent: self.exponent, turning }
     }
 
     /// Whether impulses move it.

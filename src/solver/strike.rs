@@ -18,7 +18,8 @@ use crate::num::{Impulse, Length, Mass, Quantity, div, dot, mul, mul_div};
 /// The velocities of a body: x, y and w.
 pub(crate) type Speed = [i64; 3];
 
-const LIMIT: i64 = 1 << 61;
+/// The bound of speeds, 8192 m/s over 2^k: who reaches it is named.
+pub(crate) const LIMIT: i64 = 1 << 61;
 /// How often contacts are gone through at most, if one is elastic until no impulse changes any more; else until none does
 /// by more than a 2²⁶th of the fastest approach: what is left then is met again.
 const ROUNDS: [u32; 2] = [32, 256];
@@ -218,19 +219,6 @@ impl Strike {
         [self.points[0].impulse.saturating_add(self.points[1].impulse), self.friction.impulse]
     }
 
-    /// Whether the impulses would add energy, beyond what rounding does: their work is half of the sum of
-    /// j·(v before + v after).
-    fn gains(&self, before: &[Speed], after: &[Speed]) -> bool {
-        let work = |row: &Row| {
-            let speed = |s: &[Speed]| i128::from(row.speed(&s[self.bodies[0]], &s[self.bodies[1]]));
-            let rounding = i128::from(row.impulse.unsigned_abs()) << 10;
-            let work = i128::from(row.impulse).saturating_mul(speed(before).saturating_add(speed(after)) >> 1);
-            work.saturating_sub(rounding)
-        };
-        let rows = self.points[..self.count].iter().chain([&self.friction]);
-        rows.fold(0i128, |sum, row| sum.saturating_add(work(row))) > 0
-    }
-
     /// Takes friction out.
     pub(crate) fn smooth(&mut self) {
         self.rough = 0;
@@ -338,34 +326,78 @@ fn give(bodies: [usize; 2], share: [i64; 2], row: &Row, impulse: i64, speeds: &m
     }
 }
 
-/// Solves the contacts, in their order, until no impulse changes any more. `restitutions`: C_R of each, Q48.
+/// Solves the contacts, in their order, until no impulse changes any more. `restitutions`: C_R of each, Q48; `weights`: of
+/// the bodies, by their places.
 ///
 /// No impulse pulls, friction stays within Coulomb's cone, and energy does not grow: Newton's rule with friction can add
-/// energy (Kane 1984); then the contacts are answered without restitution, and if need be without friction. Where elastic
-/// contacts that say nearly the same do not come to an end, the fastest is answered alone: the others meet again.
-pub(crate) fn solve(strikes: &mut [Strike], restitutions: &[i64], speeds: &mut [Speed], before: &mut Vec<Speed>) {
+/// energy (Kane 1984), and so can several contacts of which some bounce. Then, and where elastic contacts that say nearly
+/// the same do not come to an end, the fastest is answered alone, as the others meet again; if need be without
+/// restitution, and at last without friction, which takes energy whatever the contacts.
+pub(crate) fn solve(
+    strikes: &mut [Strike],
+    restitutions: &[i64],
+    weights: &[Weight],
+    speeds: &mut [Speed],
+    before: &mut Vec<Speed>,
+) {
     before.clear();
     before.extend_from_slice(speeds);
     let elastic = restitutions.iter().any(|&restitution| restitution >= ONE);
     let approach = strikes.iter().map(|strike| strike.approach(speeds));
     let (fastest, approach) = approach.enumerate().min_by_key(|&(_, approach)| approach).unwrap_or((0, 0));
     let enough = if elastic { 1 } else { (approach.saturating_neg() >> 26).max(1) };
-    for attempt in 0..3 {
+    for attempt in 0..4 {
+        let alone = attempt == 1;
+        if alone && strikes.len() < 2 {
+            continue;
+        }
         for (strike, &restitution) in strikes.iter_mut().zip(restitutions) {
             strike.forget();
-            strike.aim(before, if attempt == 0 { restitution } else { 0 });
-            strike.rough = if attempt < 2 { strike.rough } else { 0 };
+            strike.aim(before, if attempt < 2 { restitution } else { 0 });
+            strike.rough = if attempt < 3 { strike.rough } else { 0 };
         }
-        if !rounds(strikes, speeds, enough, ROUNDS[usize::from(elastic)]) && elastic {
-            speeds.copy_from_slice(before);
-            strikes.iter_mut().for_each(Strike::forget);
-            rounds(&mut strikes[fastest..=fastest], speeds, 1, ROUNDS[1]);
-        }
-        if strikes.iter().all(|strike| strike.rough == 0 || !strike.gains(before, speeds)) {
+        let some = if alone { &mut strikes[fastest..=fastest] } else { &mut *strikes };
+        let ended = rounds(some, speeds, enough, ROUNDS[usize::from(elastic)]);
+        if (ended || alone || !elastic) && !gains(weights, before, speeds) {
             return;
         }
-        speeds.copy_from_slice(before);
+        if attempt < 3 {
+            speeds.copy_from_slice(before);
+        }
     }
+}
+
+/// What a body's speeds weigh: mass = mantissa·2^exponent, and what that of w weighs of it, Q48. Without a mantissa it is
+/// not moved by impulses.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Weight {
+    pub(crate) mantissa: i64,
+    pub(crate) exponent: u32,
+    pub(crate) turning: i64,
+}
+
+/// Whether impulses add to the energy of the bodies, beyond what rounding does. One that is moved by nothing and moves
+/// itself may do work.
+///
+/// Range: squares of speeds are Q48 and below 2⁷⁶, times a mantissa of 34 bits.
+fn gains(weights: &[Weight], before: &[Speed], after: &[Speed]) -> bool {
+    let top = weights.iter().map(|weight| weight.exponent).max().unwrap_or(0);
+    let mut gain = 0i128;
+    for ((weight, before), after) in weights.iter().zip(before).zip(after) {
+        if weight.mantissa == 0 && *before != [0; 3] {
+            return false;
+        }
+        let grown = |axis: usize| {
+            let [b, a] = [before[axis], after[axis]].map(i128::from);
+            let rounding = b.saturating_abs().saturating_add(a.saturating_abs()) >> 38;
+            (a.saturating_sub(b).saturating_mul(a.saturating_add(b)) >> 48).saturating_sub(rounding).saturating_sub(1)
+        };
+        let turning = grown(2).saturating_mul(weight.turning.into()) >> 48;
+        let sum = grown(0).saturating_add(grown(1)).saturating_add(turning);
+        let part = sum.saturating_mul(weight.mantissa.into());
+        gain = gain.saturating_add(part >> top.saturating_sub(weight.exponent).min(120));
+    }
+    gain > 0
 }
 
 /// Goes through contacts until no impulse changes by more than `enough`; false if that takes more rounds than `most`.

@@ -15,7 +15,7 @@ use super::mobility::Mobility;
 use super::mover::Movers;
 use super::rows::{Block, LANES};
 use super::scales::Scales;
-use super::strike::{Speed, Strike};
+use super::strike::{Speed, Strike, Weight};
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Touch};
 use crate::motion::{Drive, Fault};
@@ -135,6 +135,7 @@ pub(crate) struct Timeline {
     speeds: Vec<Speed>,
     before: Vec<Speed>,
     priors: Vec<State>,
+    weights: Vec<Weight>,
     members: Vec<u32>,
     strikes: Vec<Strike>,
     restitutions: Vec<i64>,

@@ -3,13 +3,13 @@
 use super::super::flight::{Flight, NONE, State, rim};
 use super::super::mover::Movers;
 use super::super::scales::weight;
-use super::super::strike::{Strike, solve};
+use super::super::strike::{LIMIT, Strike, solve};
 use super::{Engaged, FLAT, LATE, LATER, LEAP, MANY, MOST, NEVER, OFTEN, ONE, REACH, Stage, Timeline};
 use crate::contact::{Collision, Pace};
 use crate::geom::{Rot, Vec2};
 use crate::motion::{Bound, Fault};
 use crate::narrow::{Manifold, collide};
-use crate::num::{Angle, AngularVelocity, Velocity, add_sat, lane::next, mul, round_shift};
+use crate::num::{Angle, AngularVelocity, Velocity, add_sat, clamp_i64, lane::next, mul, round_shift};
 use crate::shape::Placed;
 
 /// So many contacts are answered together at most, but for those that meet at one time.
@@ -37,7 +37,7 @@ impl Timeline {
         }
         let met = self.members.len();
         self.lean(time, stage);
-        solve(&mut self.strikes, &self.restitutions, &mut self.speeds, &mut self.before);
+        solve(&mut self.strikes, &self.restitutions, &self.weights, &mut self.speeds, &mut self.before);
         for (&at, &restitution) in self.members.iter().zip(&self.restitutions) {
             self.engaged[at as usize].rests = restitution == 0;
         }
@@ -64,6 +64,7 @@ impl Timeline {
         self.locals.clear();
         self.speeds.clear();
         self.priors.clear();
+        self.weights.clear();
         self.strikes.clear();
         self.restitutions.clear();
         self.members.clear();
@@ -149,6 +150,7 @@ impl Timeline {
         let line = |v: i64| round_shift(v.into(), scales.shift) as i64;
         self.speeds.push([line(v[0]), line(v[1]), rim(omega, &stage.mobilities[flight.slot as usize], scales)]);
         self.priors.push(flight.state);
+        self.weights.push(stage.mobilities[flight.slot as usize].weight());
         self.locals.push(place);
         self.locals.len().saturating_sub(1)
     }
@@ -158,6 +160,7 @@ impl Timeline {
         self.locals.truncate(known);
         self.speeds.truncate(known);
         self.priors.truncate(known);
+        self.weights.truncate(known);
     }
 
     /// Gives a body the speed that its impacts left it.
@@ -183,6 +186,10 @@ impl Timeline {
             self.struck.push(place);
         }
         flight.strikes = flight.strikes.saturating_add(1);
+        let bound = |speed: &i64| speed.unsigned_abs() >= LIMIT.unsigned_abs();
+        if self.speeds[at].iter().any(bound) {
+            faults.push(Fault { slot, bound: Bound::ContactSpeed });
+        }
         if flight.strikes >= MANY {
             faults.push(Fault { slot, bound: Bound::Impacts });
         }
@@ -193,7 +200,7 @@ impl Timeline {
         }
         let State { v, omega, .. } = &mut flight.state;
         for (v, change) in v.iter_mut().zip(change) {
-            *v = add_sat(*v, change.saturating_mul(1 << k));
+            *v = add_sat(*v, clamp_i64(i128::from(change) << k));
         }
         *omega = add_sat(*omega, mobility.over_sigma(change[2], 48u32.saturating_sub(k), 48));
         movers.strike(flight.place, change, to.saturating_sub(time), stage.scales);
@@ -231,7 +238,7 @@ impl Timeline {
 
     /// What came to rest is held: of the forces, contacts take what would press them together in what is left of the tick.
     fn rest(&mut self, stage: &Stage<'_>) {
-        let Timeline { flights, locals, speeds, strikes, restitutions, before, .. } = self;
+        let Timeline { flights, locals, speeds, strikes, restitutions, weights, before, .. } = self;
         let mut resting = restitutions.iter().map(|&restitution| restitution == 0);
         strikes.retain(|_| resting.next().unwrap_or(false));
         if strikes.is_empty() {
@@ -248,7 +255,7 @@ impl Timeline {
         strikes.iter_mut().for_each(Strike::smooth);
         restitutions.clear();
         restitutions.resize(strikes.len(), 0);
-        solve(strikes, restitutions, speeds, before);
+        solve(strikes, restitutions, weights, speeds, before);
         let k = stage.scales.shift;
         for (at, &place) in locals.iter().enumerate() {
             let slot = flights.list[place as usize].slot as usize;
@@ -256,7 +263,7 @@ impl Timeline {
             let change = [0, 1, 2].map(|axis: usize| speeds[at][axis].saturating_sub(before[at][axis]));
             let gain = &mut flights.list[place as usize].gain;
             for (gain, change) in gain.iter_mut().zip([change[0], change[1]]) {
-                *gain = add_sat(*gain, change.saturating_mul(1 << k));
+                *gain = add_sat(*gain, clamp_i64(i128::from(change) << k));
             }
             if mobility.moves() {
                 gain[2] = add_sat(gain[2], mobility.over_sigma(change[2], 48u32.saturating_sub(k), 48));
