@@ -18,7 +18,7 @@ const FLOORS: [&[&str]; 11] = [
     &["world"],
     &["snapshot"],
     &["replay"],
-    &["scene"],
+    &["scene", "guide"],
 ];
 /// The one file with floats.
 const FLOAT_FILE: &str = "num/float.rs";

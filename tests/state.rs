@@ -230,8 +230,8 @@ fn every_flipped_bit_of_a_save_is_refused_and_a_forged_one_is_a_world_or_refused
             assert!(largest <= save.len().max(8192), "byte {at} bit {bit} allocates {largest}");
             match at {
                 0..8 => assert_eq!(error, DecodeError::NotASave),
-                8..12 => assert!(matches!(error, DecodeError::Version { known: 2, .. }), "{error}"),
-                12..16 => assert!(matches!(error, DecodeError::Law { known: 3, .. }), "{error}"),
+                8..12 => assert!(matches!(error, DecodeError::Version { known: 3, .. }), "{error}"),
+                12..16 => assert!(matches!(error, DecodeError::Law { known: 4, .. }), "{error}"),
                 _ => {
                     let forged = at < save.len() - 8 && forge(&mut bytes);
                     worlds += u32::from(forged);

@@ -18,6 +18,10 @@ use tamias2d::{StatusEntry, World};
 /// With --events instead one row per event, in the order of the engine: tick (after its step), event (contact_begin,
 /// contact_end, sensor_begin, sensor_end), and the two colliders, each as its body and its index in that body's list,
 /// from 0. A body that was destroyed is still named; what it touched ends in the step after.
+///
+/// With --collisions one row per collision that was answered at its time: tick (after its step), time of the collision in s,
+/// order (collisions with one number were answered together), both colliders, the point, the normal from b to a, and the
+/// impulse on a in N s. What rests has none.
 #[derive(clap::Args)]
 #[command(after_long_help = "\
 A scene:
@@ -62,6 +66,9 @@ pub(crate) struct Run {
     /// Print what begins and ends to touch instead of where bodies are
     #[arg(long, conflicts_with = "every")]
     events: bool,
+    /// Print what collides, and when, instead of where bodies are
+    #[arg(long, conflicts_with_all = ["every", "events"])]
+    collisions: bool,
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Csv)]
     format: Format,
@@ -95,7 +102,11 @@ impl Run {
 
     fn steps<S: Stage>(&self, mut script: Script<'_>, mut stage: S) -> Result<S, Failure> {
         let out = BufWriter::new(std::io::stdout().lock());
-        let columns = if self.events { Columns::Events } else { Columns::Bodies };
+        let columns = match (self.events, self.collisions) {
+            (true, _) => Columns::Events,
+            (_, true) => Columns::Collisions,
+            _ => Columns::Bodies,
+        };
         let mut table = Table::new(out, self.format, columns, stage.world().config().tick_rate)?;
         let bar = progress(self.ticks, "ticks");
         for tick in 0..=self.ticks {
@@ -107,6 +118,10 @@ impl Run {
             if self.events {
                 for event in stage.world().events() {
                     table.event(tick, event, &script)?;
+                }
+            } else if self.collisions {
+                for collision in stage.world().collisions() {
+                    table.collision(tick, collision, &script)?;
                 }
             } else if tick % self.every == 0 {
                 for body in stage.world().bodies() {

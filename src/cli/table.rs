@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use tamias2d::num::{Decimal, Quantity};
 use tamias2d::scene::Script;
-use tamias2d::{Angle, Body, ColliderId, Event};
+use tamias2d::{Angle, Body, ColliderId, Collision, Event};
 
 /// How rows are written.
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -18,6 +18,7 @@ pub(crate) enum Format {
 pub(crate) enum Columns {
     Bodies,
     Events,
+    Collisions,
 }
 
 /// Writes rows.
@@ -33,6 +34,9 @@ impl<W: Write> Table<W> {
         match (format, columns) {
             (Format::Csv, Columns::Bodies) => writeln!(out, "tick,time,body,x,y,angle,turns,vx,vy,omega")?,
             (Format::Csv, Columns::Events) => writeln!(out, "tick,event,body_a,collider_a,body_b,collider_b")?,
+            (Format::Csv, Columns::Collisions) => {
+                writeln!(out, "tick,time,order,body_a,collider_a,body_b,collider_b,x,y,nx,ny,jx,jy")?;
+            }
             (Format::Json, _) => write!(out, "[")?,
         }
         Ok(Table { out, format, rows: 0, tick_rate })
@@ -62,10 +66,37 @@ impl<W: Write> Table<W> {
         Ok(())
     }
 
+    pub(crate) fn collision(&mut self, tick: u64, collision: &Collision, script: &Script<'_>) -> io::Result<()> {
+        let Collision { order, point, normal, impulse, .. } = collision;
+        // t_c since tick 0, to 48 fraction bits.
+        let began = (i128::from(tick.saturating_sub(1)) << 48) / i128::from(self.tick_rate);
+        let time = Decimal { bits: began + i128::from(collision.time.to_bits()), frac: 48 };
+        let time = format!("{time:.15}");
+        let ((body_a, a), (body_b, b)) = (place(collision.a, script), place(collision.b, script));
+        let [nx, ny] = normal.map(|n| Decimal { bits: n.into(), frac: 30 });
+        let (x, y, jx, jy) = (point.x, point.y, impulse.x, impulse.y);
+        match self.format {
+            Format::Csv => {
+                let (body_a, body_b) = (csv_field(body_a), csv_field(body_b));
+                writeln!(self.out, "{tick},{time},{order},{body_a},{a},{body_b},{b},{x},{y},{nx},{ny},{jx},{jy}")?;
+            }
+            Format::Json => {
+                let comma = if self.rows == 0 { "" } else { "," };
+                let (body_a, body_b) = (super::quoted(body_a), super::quoted(body_b));
+                write!(
+                    self.out,
+                    "{comma}\n{{\"tick\":{tick},\"time\":{time},\"order\":{order},\"body_a\":{body_a},\"collider_a\":{a},\
+                     \"body_b\":{body_b},\"collider_b\":{b},\"x\":{x},\"y\":{y},\"nx\":{nx},\"ny\":{ny},\
+                     \"jx\":{jx},\"jy\":{jy}}}"
+                )?;
+            }
+        }
+        self.rows += 1;
+        Ok(())
+    }
+
     pub(crate) fn event(&mut self, tick: u64, event: &Event, script: &Script<'_>) -> io::Result<()> {
-        // The script created every collider of its world.
-        let of = |id: ColliderId| script.collider(id).map_or(("", 0), |(body, index)| (script.label(body), index));
-        let (kind, (body_a, a), (body_b, b)) = (event.kind, of(event.a), of(event.b));
+        let (kind, (body_a, a), (body_b, b)) = (event.kind, place(event.a, script), place(event.b, script));
         match self.format {
             Format::Csv => {
                 let (body_a, body_b) = (csv_field(body_a), csv_field(body_b));
@@ -91,6 +122,11 @@ impl<W: Write> Table<W> {
         }
         self.out.flush()
     }
+}
+
+/// A collider as its body and its index there. The script created every collider of its world.
+fn place<'s>(id: ColliderId, script: &'s Script<'_>) -> (&'s str, u32) {
+    script.collider(id).map_or(("", 0), |(body, index)| (script.label(body), index))
 }
 
 /// The seconds after `tick` ticks, rounded to 15 decimals.

@@ -50,7 +50,8 @@ pub(crate) struct Motion {
 
 /// The first time τ in 0 ..= until (Q32 of a tick, until ≤ 2³²) at which the outlines are no farther apart than
 /// [`TOUCH`] and close faster than `closing` (Q40 m per tick, ≥ 0) along every axis that separates them or overlaps by
-/// no more than `slack` (Q32 m, ≥ 0, or [`TOUCH`] if that is more); none if there is none.
+/// no more than `slack` (Q32 m, ≥ 0, or [`TOUCH`] if that is more), but for the sides that are behind the widest one; none if
+/// there is none.
 ///
 /// * It is never late: until then they are no deeper in each other than rounding (2⁻³² m, 2⁻²⁸ of their reach, and what
 ///   they move in 2⁻³² of a tick), or half of [`TOUCH`] where they touched before without closing. Coming from farther
@@ -97,7 +98,7 @@ pub(crate) fn first_touch(
         if round == 0 {
             *clearance = Clearance::new(&moment, &axes, widest, path.angles(time), path.arms);
         }
-        match moment.look(&mut axes, separation, &terms) {
+        match moment.look(&mut axes, widest, separation, &terms) {
             Look::Touch => break,
             Look::Never => return None,
             // Less than a unit of time away.
@@ -271,7 +272,7 @@ impl Moment {
     }
 
     /// Whether they touch and close; if not, how long they cannot.
-    fn look(&self, axes: &mut Axes, separation: i64, terms: &Terms) -> Look {
+    fn look(&self, axes: &mut Axes, widest: usize, separation: i64, terms: &Terms) -> Look {
         if separation > terms.tolerance {
             return match self.advance(axes, separation) {
                 NEVER => Look::Never,
@@ -283,9 +284,15 @@ impl Moment {
         if separation < deep {
             return Look::Never;
         }
+        let toward = self.axis(axes, widest).map_or([0; 2], |axis| axis.from_a());
         let mut held = None;
         for index in 0..axes.count {
-            if self.apart(axes, index, deep).is_some() {
+            if let Some(overlap) = self.apart(axes, index, deep) {
+                // The far side of what is thin is no side to leave by.
+                let behind = overlap < terms.tolerance.wrapping_neg() && self.is_behind(axes, index, toward);
+                if behind {
+                    continue;
+                }
                 let Some((line, vertices)) = self.line(axes, index) else { continue };
                 let wait = self.wait(&line, vertices, terms, band);
                 held = held.max(wait);
@@ -296,6 +303,12 @@ impl Moment {
             Some(step) if step > self.rest => Look::Never,
             Some(step) => Look::Held(step.max(1)),
         }
+    }
+
+    /// Whether an axis points against a direction from a to b.
+    fn is_behind(&self, axes: &Axes, index: usize, [x, y]: [i64; 2]) -> bool {
+        let [u, v] = self.axis(axes, index).map_or([0; 2], |axis| axis.from_a());
+        x.wrapping_mul(u).wrapping_add(y.wrapping_mul(v)) < 0
     }
 
     /// How long an axis on which they touch does not close; none if it does.

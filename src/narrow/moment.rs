@@ -39,6 +39,14 @@ pub(super) struct Axis {
     pub(super) edge: bool,
 }
 
+impl Axis {
+    /// The normal as a direction from a to b.
+    pub(super) fn from_a(&self) -> [i64; 2] {
+        let normal = self.normal.map(i64::from);
+        if self.owner == 0 { normal } else { normal.map(i64::wrapping_neg) }
+    }
+}
+
 /// The most axes: edges and, with a circle, one more.
 const AXES: usize = 17;
 

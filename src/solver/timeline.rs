@@ -35,6 +35,10 @@ const FLAT: i64 = 1 << 16;
 /// How often a body is struck in a tick before its impacts take all speed out of it, and how often at all.
 const MANY: u32 = 256;
 const MOST: u32 = 320;
+/// So many answers a world has in a tick before nothing bounces in it, and so many more for each body that may be struck;
+/// after twice as many, who is struck stays. A pile that falls together has two a body, 200 elastic polygons have 50.
+const BUDGET: u32 = 2048;
+const BUDGET_EACH: u32 = 8;
 /// How often a pair is answered in a tick before its bodies go on as one while they touch: what rolls on another, or is
 /// struck to and fro, would close again and again. Not what is elastic.
 const OFTEN: u32 = 8;
@@ -249,6 +253,12 @@ impl Timeline {
             pair.time = time;
             self.queue.push(Reverse((time, pair.colliders[0], pair.colliders[1], at as u32)));
         }
+    }
+
+    /// By how many times the answers of this tick exceed what a world has.
+    fn overspent(&self) -> u32 {
+        let budget = (self.flights.list.len() as u32).saturating_mul(BUDGET_EACH).saturating_add(BUDGET);
+        self.order.checked_div(budget).unwrap_or(0)
     }
 
     /// Answers the impacts up to a time of the tick. `from`: where the substep began.

@@ -68,6 +68,7 @@ impl Timeline {
         self.strikes.clear();
         self.restitutions.clear();
         self.members.clear();
+        let spent = self.overspent() > 0;
         for at in 0..self.group.len() {
             let at = self.group[at];
             self.engaged[at as usize].time = NEVER;
@@ -80,7 +81,7 @@ impl Timeline {
             let [a, b] = pair.flights.map(|place| &self.flights.list[place as usize]);
             let press = press(a, b);
             let threshold = stage.scales.threshold(pair.restitution, press, a.place != 0 && b.place != 0);
-            let spent = a.strikes.max(b.strikes) >= MANY || strike.is_joined();
+            let spent = spent || a.strikes.max(b.strikes) >= MANY || strike.is_joined();
             let bounces = approach > threshold && !spent;
             if !bounces {
                 // It rests, and is a row's in the next tick: until then it is not answered over and over.
@@ -133,7 +134,7 @@ impl Timeline {
         let [a, b] = pair.flights.map(|place| &self.flights.list[place as usize]);
         let (manifold, between) = touching(pair, a, b, stage)?;
         let mobility = [a, b].map(|flight| &stage.mobilities[flight.slot as usize]);
-        let joined = pair.answers >= OFTEN && pair.restitution < ONE;
+        let joined = pair.answers >= OFTEN && (pair.restitution < ONE || self.overspent() > 0);
         Some(Strike::new(bodies, &manifold, between, mobility, pair.friction, joined))
     }
 
@@ -173,7 +174,7 @@ impl Timeline {
         movers: &mut Movers,
         faults: &mut Vec<Fault>,
     ) {
-        let place = self.locals[at];
+        let (place, overspent) = (self.locals[at], self.overspent());
         let flight = &mut self.flights.list[place as usize];
         let slot = flight.slot as usize;
         let (mobility, k) = (&stage.mobilities[slot], stage.scales.shift);
@@ -190,7 +191,10 @@ impl Timeline {
         if self.speeds[at].iter().any(bound) {
             faults.push(Fault { slot, bound: Bound::ContactSpeed });
         }
-        if flight.strikes >= MANY {
+        if overspent > 1 {
+            flight.strikes = flight.strikes.max(MOST);
+        }
+        if flight.strikes >= MANY || overspent > 0 {
             faults.push(Fault { slot, bound: Bound::Impacts });
         }
         if flight.strikes >= MOST {
