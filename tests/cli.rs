@@ -62,7 +62,17 @@ fn help_says_what_each_command_does() {
         (vec!["--help"], vec!["run", "verify", "info", "scenes", "record", "Exit status", "Examples"]),
         (
             vec!["run", "--help"],
-            vec!["--ticks", "--every", "--events", "--format", "--record", "radians", "turns", "polygon"],
+            vec![
+                "--ticks",
+                "--every",
+                "--events",
+                "--collisions",
+                "--format",
+                "--record",
+                "radians",
+                "turns",
+                "polygon",
+            ],
         ),
         (vec!["verify", "--help"], vec!["first bad tick", "--json", "--hashes"]),
         (vec!["info", "--help"], vec!["--json"]),
@@ -363,6 +373,35 @@ const TOUCHING: &str = r#"{"name":"n","tick_rate":60,"gravity":[0,-10],"bodies":
     {"tick":0,"do":{"create_body":{"name":"late","position":[97,0],"velocity":[30,0],"kind":"kinematic",
                                    "colliders":[{"circle":0.25,"filter":{"category":2}},{"circle":0.5}]}}},
     {"tick":5,"do":{"destroy_body":{"body":"late"}}}]}"#;
+
+#[test]
+fn collisions_have_their_times_points_normals_and_impulses() {
+    // Boxes of 1 kg and 1 m whose gap of 1 m closes at 2 m/s: at 0.5 s, the left one gives its 2 N s to the other.
+    const HEAD_ON: &str = r#"{"name":"head-on","tick_rate":60,"gravity":[0,0],"bodies":[
+        {"name":"left","position":[0,0],"velocity":[2,0],"mass":1,"colliders":[{"box":[1,1],"restitution":1}]},
+        {"name":"right","position":[2,0],"mass":1,"colliders":[{"box":[1,1],"restitution":1}]}]}"#;
+    let output = run(HEAD_ON, &["--ticks", "60", "--collisions"]);
+    assert_eq!((output.status, output.err.as_str()), (0, ""));
+    let lines: Vec<&str> = output.out.lines().collect();
+    assert_eq!(lines[0], "tick,time,order,body_a,collider_a,body_b,collider_b,x,y,nx,ny,jx,jy");
+    assert_eq!(lines.len(), 2, "{lines:?}");
+    let row: Vec<&str> = lines[1].split(',').collect();
+    let number = |at: usize| row[at].parse::<f64>().expect("a number");
+    assert_eq!((&row[2..7], &row[9..11]), (&["0", "left", "0", "right", "0"][..], &["-1", "0"][..]));
+    for (at, want) in [(1, 0.5), (7, 1.5), (8, 0.0), (11, -2.0), (12, 0.0)] {
+        assert!((number(at) - want).abs() < 1e-7, "{lines:?}");
+    }
+    let json = run(HEAD_ON, &["--ticks", "60", "--collisions", "--format", "json"]);
+    let rows: Vec<serde_json::Value> = serde_json::from_str(&json.out).expect("JSON");
+    assert_eq!(
+        (rows.len(), &rows[0]["tick"].to_string(), &rows[0]["body_b"]),
+        (1, &row[0].to_string(), &"right".into())
+    );
+    for (key, at) in [("time", 1), ("x", 7), ("y", 8), ("nx", 9), ("ny", 10), ("jx", 11), ("jy", 12)] {
+        assert_eq!(rows[0][key].as_f64(), Some(number(at)), "{key}");
+    }
+    assert_eq!(run(TC2, &["--ticks", "3", "--collisions", "--events"]).status, 2);
+}
 
 #[test]
 fn events_name_bodies_and_the_places_of_their_colliders() {
