@@ -284,7 +284,7 @@ impl Moment {
         if separation < deep {
             return Look::Never;
         }
-        let toward = self.axis(axes, widest).map_or([0; 2], |axis| axis.from_a());
+        let toward = self.axis(axes, widest).map_or([0; 2], |axis| axis.outward());
         let mut held = None;
         for index in 0..axes.count {
             if let Some(overlap) = self.apart(axes, index, deep) {
@@ -307,7 +307,7 @@ impl Moment {
 
     /// Whether an axis points against a direction from a to b.
     fn is_behind(&self, axes: &Axes, index: usize, [x, y]: [i64; 2]) -> bool {
-        let [u, v] = self.axis(axes, index).map_or([0; 2], |axis| axis.from_a());
+        let [u, v] = self.axis(axes, index).map_or([0; 2], |axis| axis.outward());
         x.wrapping_mul(u).wrapping_add(y.wrapping_mul(v)) < 0
     }
 

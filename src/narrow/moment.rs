@@ -41,7 +41,7 @@ pub(super) struct Axis {
 
 impl Axis {
     /// The normal as a direction from a to b.
-    pub(super) fn from_a(&self) -> [i64; 2] {
+    pub(super) fn outward(&self) -> [i64; 2] {
         let normal = self.normal.map(i64::from);
         if self.owner == 0 { normal } else { normal.map(i64::wrapping_neg) }
     }
