@@ -525,3 +525,18 @@ fn an_elastic_gas_keeps_its_energy() {
 fn an_elastic_gas_in_gravity_keeps_its_energy() {
     gases(3, -G, 10_000, 1e-4);
 }
+
+#[test]
+fn copies_of_a_world_have_no_collisions() {
+    let mut world = world(0.0, 0.0);
+    add(&mut world, fixed(0.0, 0.0, surface(rectangle(1.0, 1.0), 0.0, 1.0)));
+    add(&mut world, moving(solid(1.1, 0.0, surface(rectangle(1.0, 1.0), 0.0, 1.0)), -30.0, 0.0));
+    let start = world.clone();
+    world.step();
+    assert_eq!(world.collisions().len(), 1);
+    assert!(world.clone().collisions().is_empty());
+    world.clone_from(&start);
+    assert!(world.collisions().is_empty());
+    world.step();
+    assert_eq!(world.collisions().len(), 1);
+}

@@ -57,10 +57,11 @@ pub struct Pace {
 }
 
 /// A collision of a step, answered at its time (IM:col2D): a value, not state. Those of one step are in the order in which
-/// they happened. What rests, or comes together too slowly to bounce, has none: rows hold it.
+/// they happened. What rests, or comes together too slowly to bounce, has none: rows hold it; nor has what comes together
+/// without restitution from less than 2 cm while both bodies touch others. [`Event`](crate::Event)s tell of those.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Collision {
-    /// The collider in the lower slot.
+    /// The collider in the lower slot; an id of a collider that is gone is no longer valid.
     pub a: ColliderId,
     /// The other one.
     pub b: ColliderId,
@@ -72,7 +73,8 @@ pub struct Collision {
     pub point: Vec2<Length>,
     /// From b to a, unit, 30 fraction bits.
     pub normal: [i32; 2],
-    /// On a, friction included; b gets the negative. Rounding: 2⁻⁴⁷ of it and 2⁻⁴⁸ m/s times the lesser mass.
+    /// On a, friction included; b gets the negative. Rounding: 2⁻⁴⁷ of it and 2⁻⁴⁸ m/s times the lesser mass. A body that the
+    /// status names for its impacts or its speed may have got less.
     pub impulse: Vec2<Impulse>,
     /// The bodies of a and of b before the answer.
     pub before: [Pace; 2],

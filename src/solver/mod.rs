@@ -74,6 +74,7 @@ impl Clone for Solver {
     fn clone_from(&mut self, source: &Self) {
         self.mobilities.clone_from(&source.mobilities);
         self.scales = source.scales;
+        self.timeline.collisions.clear();
     }
 }
 

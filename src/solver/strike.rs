@@ -347,8 +347,8 @@ pub(crate) fn solve(
     let (fastest, approach) = approach.enumerate().min_by_key(|&(_, approach)| approach).unwrap_or((0, 0));
     let enough = if elastic { 1 } else { (approach.saturating_neg() >> 26).max(1) };
     for attempt in 0..4 {
-        let alone = attempt == 1;
-        if alone && strikes.len() < 2 {
+        let alone = attempt == 1 || strikes.len() < 2;
+        if attempt == 1 && strikes.len() < 2 {
             continue;
         }
         for (strike, &restitution) in strikes.iter_mut().zip(restitutions) {

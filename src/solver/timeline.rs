@@ -77,6 +77,9 @@ struct Engaged {
 
 /// C_R = 1.
 const ONE: i64 = 1 << 48;
+/// How much deeper than when it was taken in a pair may be, and is not lost: 5 µm, Q32 m. One at rest is pressed in by some
+/// 0.1 µm until it closes.
+const DEEPER: i64 = 21_475;
 /// When what only seemed to meet is looked at again: when it may have moved by 0.1 mm, Q32 m, and twice as far each time;
 /// 1/64 of a tick later at most.
 const LEAP: i64 = 429_497;
@@ -241,9 +244,10 @@ impl Timeline {
         if motion.fastest([one.reach, other.reach], rest) < closing || pair.clearance.lasts(&motion, rest) {
             return;
         }
-        let slack = if a.place != 0 || b.place != 0 { scales.slack } else { pair.depth };
+        let depth = pair.depth.saturating_add(DEEPER);
+        let slack = if a.place != 0 || b.place != 0 { scales.slack.max(depth) } else { depth };
         // What closes so slowly that it is let, is not so deep when it closes faster that it is lost.
-        let slack = slack.max(mul(pair.least, scales.margins.tick, 78));
+        let slack = slack.max(mul(least.min(scales.least_settled()), scales.margins.tick, 78));
         if let Some(after) = first_touch(one, other, &motion, rest, closing, slack, &mut pair.clearance) {
             let time = from.saturating_add(after);
             if time > TICK.saturating_sub(SAME) {
