@@ -7,7 +7,7 @@ use crate::geom::Aabb;
 use crate::num::mul;
 
 impl Timeline {
-    /// A body that was struck goes another way: whom it may meet there. `around`: a box about that.
+    /// A body that was struck goes another way: whom it may meet there.
     pub(super) fn meet_again(&mut self, place: usize, time: i64, to: i64, stage: &Stage<'_>, movers: &Movers) {
         let Stage { bodies, colliders, touch, .. } = *stage;
         let Flight { slot, around, .. } = self.flights.list[place];
