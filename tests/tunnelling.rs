@@ -253,13 +253,13 @@ fn lossy(speed: f64) {
 }
 
 #[test]
-#[ignore = "overlap 1.4 cm at 20 m/s, e 0.5, of 1 m: what rolls on another closes slowly and sinks"]
+#[ignore = "overlap 1.4 cm at 20 m/s, e 0.5, of 1 m: what rolls on another closes slowly and sinks: cargo test --release --test tunnelling -- --ignored"]
 fn what_loses_energy_stays_in_a_room() {
     lossy(20.0);
 }
 
 #[test]
-#[ignore = "overlap 11 cm at 200 m/s, e 0.5, of 1 m: what rolls on another closes slowly and sinks"]
+#[ignore = "overlap 11 cm at 200 m/s, e 0.5, of 1 m: what rolls on another closes slowly and sinks: cargo test --release --test tunnelling -- --ignored"]
 fn bullets_that_lose_energy_stay_in_a_room() {
     lossy(200.0);
 }

@@ -115,7 +115,8 @@ pub enum Bound {
     /// A speed in a substep with contacts: ±400·2^k m/s along an axis or at the rim of the body, or an eighth of a turn a
     /// substep.
     ContactSpeed,
-    /// The impacts of a body in one tick at 256: from then on nothing bounces off it in that tick.
+    /// The impacts of a body in one tick at 256, or those of its world at 2048 and 8 a body: from then on nothing bounces off
+    /// it in that tick.
     Impacts,
 }
 

@@ -23,8 +23,8 @@ pub(crate) const LIMIT: i64 = 1 << 61;
 /// How often contacts are gone through at most, if one is elastic until no impulse changes any more; else until none does
 /// by more than a 2²⁶th of the fastest approach: what is left then is met again.
 const ROUNDS: [u32; 2] = [32, 256];
-/// C_R = 1.
-const ONE: i64 = 1 << 48;
+/// C_R = 1, Q48.
+pub(crate) const ONE: i64 = 1 << 48;
 
 fn bounded(v: i64) -> i64 {
     v.clamp(-LIMIT, LIMIT)

@@ -15,7 +15,7 @@ use super::mobility::Mobility;
 use super::mover::Movers;
 use super::rows::{Block, LANES};
 use super::scales::Scales;
-use super::strike::{Speed, Strike, Weight};
+use super::strike::{ONE, Speed, Strike, Weight};
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Touch};
 use crate::motion::{Drive, Fault};
@@ -75,8 +75,6 @@ struct Engaged {
     rests: bool,
 }
 
-/// C_R = 1.
-const ONE: i64 = 1 << 48;
 /// How much deeper than when it was taken in a pair may be, and is not lost: 5 µm, Q32 m. One at rest is pressed in by some
 /// 0.1 µm until it closes.
 const DEEPER: i64 = 21_475;

@@ -153,8 +153,8 @@ impl World {
         &self.events
     }
 
-    /// The collisions of the last step, in the order in which they happened. A value of the step, as [`World::events`]; a
-    /// copy of a world has none.
+    /// The collisions of the last step, in the order in which they happened. A value of the step: neither saved nor
+    /// hashed, and a copy of a world, or one just loaded, has none.
     pub fn collisions(&self) -> &[Collision] {
         self.solver.collisions()
     }

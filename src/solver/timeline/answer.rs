@@ -3,8 +3,8 @@
 use super::super::flight::{Flight, NONE, State, rim};
 use super::super::mover::Movers;
 use super::super::scales::weight;
-use super::super::strike::{LIMIT, Strike, solve};
-use super::{Engaged, FLAT, LATE, LATER, LEAP, MANY, MOST, NEVER, OFTEN, ONE, REACH, Stage, Timeline};
+use super::super::strike::{LIMIT, ONE, Strike, solve};
+use super::{Engaged, FLAT, LATE, LATER, LEAP, MANY, MOST, NEVER, OFTEN, REACH, Stage, Timeline};
 use crate::contact::{Collision, Pace};
 use crate::geom::{Rot, Vec2};
 use crate::motion::{Bound, Fault};
