@@ -521,9 +521,9 @@ fn an_elastic_gas_keeps_its_energy() {
 }
 
 #[test]
-#[ignore = "seed 1 runs into the bound of 256 impacts in tick 8253: an elastic body that rolls on another bounces at mm/s: cargo test --release --test impacts -- --ignored"]
 fn an_elastic_gas_in_gravity_keeps_its_energy() {
-    gases(3, -G, 10_000, 1e-4);
+    // The slower of two points that are nearly one, answered with the other, once took 5e-4 of it (seed 1, tick 8254).
+    gases(3, -G, 10_000, 1e-7);
 }
 
 #[test]

@@ -154,12 +154,14 @@ impl Strike {
     /// Sets the speeds with which the points are to separate: C_R (Q48) times those with which they approach.
     ///
     /// Of two points of which one parts, that one takes no part in a bounce: what the other does to it would be an impulse
-    /// along a speed, and add energy. If it closes then, it is met again.
+    /// along a speed, and add energy. Nor does the slower of two that are nearly one, whose speeds an impulse would have
+    /// to match both. If it closes then, it is met again.
     pub(crate) fn aim(&mut self, speeds: &[Speed], restitution: i64) {
         let [a, b] = self.bodies.map(|at| speeds[at]);
-        let parts = [0, 1].map(|at: usize| self.points[at].speed(&a, &b) >= 0);
-        if restitution > 0 && self.count == 2 && parts[0] != parts[1] {
-            if parts[0] {
+        let apart = [0, 1].map(|at: usize| self.points[at].speed(&a, &b));
+        let differ = (apart[0] >= 0) != (apart[1] >= 0) || self.determinant.is_none();
+        if restitution > 0 && self.count == 2 && differ {
+            if apart[0] > apart[1] {
                 self.points.swap(0, 1);
                 self.arms.swap(0, 1);
             }
