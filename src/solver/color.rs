@@ -2,6 +2,7 @@
 //!
 //! The colouring is part of the algorithm: it follows from the order of the contacts alone.
 
+use super::rows::{Block, LANES};
 use crate::num::lane::next;
 
 /// Contacts of two bodies that move take the lowest free colour from 0 on, those with one take the lowest from
@@ -68,5 +69,17 @@ impl Colors {
                 seats[color] = seats[color].saturating_add(if color == REST { 8 } else { 1 });
             }
         }
+    }
+
+    /// A seat for a contact that comes after those of the tick, among others of its kind; in a new block if need be.
+    pub(crate) fn late(&mut self, blocks: &mut Vec<Block>, places: [u32; 2], free: &[bool]) -> usize {
+        let found = (self.blocks..blocks.len()).find_map(|at| Some((at, blocks[at].vacancy(places, free)?)));
+        let (at, i) = found.unwrap_or((blocks.len(), 0));
+        if at == blocks.len() {
+            blocks.push(Block::default());
+        }
+        let seat = at.saturating_mul(LANES).saturating_add(i);
+        self.seats.push(seat as u32);
+        seat
     }
 }

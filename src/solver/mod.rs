@@ -35,7 +35,7 @@ use prepare::Joint;
 use rows::{Block, LANES};
 pub(crate) use scales::Scales;
 use scales::weight;
-use timeline::{Stage, Timeline};
+use timeline::{Settled, Stage, Timeline};
 
 /// How many substeps pass between sweeps that take back what pushing overlaps apart added to velocities: there is one
 /// after every fifth substep and after the last; and in between for contacts with a row that pushes without bearing a load,
@@ -166,7 +166,7 @@ impl Solver {
         drive: &Drive,
         faults: &mut Vec<Fault>,
     ) {
-        let Solver { mobilities, scales, movers, before, places, fast, timeline, colors, blocks, kernel, .. } = self;
+        let Solver { mobilities, scales, movers, before, free, places, fast, timeline, colors, blocks, kernel, .. } = self;
         let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[] };
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
@@ -184,10 +184,23 @@ impl Solver {
                     kernel.solve::<true>(block, u8::MAX, &mut movers.lanes, scales);
                 }
                 movers.drift(scales);
-                timeline.run(scales.span(substep), &Stage { blocks, ..stage }, movers, faults);
+                let seats = &colors.seats;
+                let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats, blocks };
+                timeline.run(scales.span(substep), &stage, movers, faults);
                 for pair in timeline.retired.drain(..) {
                     let seat = colors.seats[touch.pairs[pair as usize].row as usize] as usize;
                     blocks[seat / LANES].retire(seat % LANES);
+                }
+                for Settled { pair, manifold, between } in timeline.settled.drain(..) {
+                    let pair = &mut touch.pairs[pair as usize];
+                    (pair.manifold, pair.row) = (manifold, places.len() as u32);
+                    places.push(pair.bodies.map(|slot| movers.place_of(slot)));
+                    let both = places[pair.row as usize];
+                    let seat = colors.late(blocks, both, free);
+                    let (block, i) = (&mut blocks[seat / LANES], seat % LANES);
+                    let mobility = pair.bodies.map(|slot| &mobilities[slot as usize]);
+                    Joint::new(pair, both, between, mobility).write(block, i, &Contact::default(), pair.friction, scales);
+                    block.backdate(i, &movers.lanes);
                 }
                 let all = substep % RELAX == 0 || substep == scales.substeps;
                 for block in &mut *blocks {

@@ -152,13 +152,8 @@ impl Block {
         let mut speed = [0, 1].map(|at| add(along, turning(&self.points[at], w)));
         let load = [0, 1].map(|at| self.points[at].impulse[i]);
 
-        let d = [0, 1].map(|axis| sub(a.d[axis].into(), b.d[axis].into()));
-        let apart = add(lane::times(nx, d[0]), lane::times(ny, d[1]));
-        let phi = [a.phi as i32, b.phi as i32];
-        let separation = [0, 1].map(|at| {
-            let moved = lane::round::<28>(add(apart, turning(&self.points[at], phi)));
-            lane::limit(add(self.separation[at][i].into(), moved))
-        });
+        let moved = self.moved(i, a, b);
+        let separation = [0, 1].map(|at| lane::limit(add(self.separation[at][i].into(), moved[at])));
 
         let mut change = [0; 3];
         if FRICTION {
@@ -187,6 +182,38 @@ impl Block {
             self.give(i, movers, change);
         }
         (change[1].abs().max(change[2].abs()) >= BLOW as i32, pushes_first | pushes_second)
+    }
+
+    /// How far the points have come apart since the tick began, Q26.
+    #[inline(always)]
+    fn moved(&self, i: usize, a: &Mover, b: &Mover) -> [i64; 2] {
+        let d = [0, 1].map(|axis| sub(a.d[axis].into(), b.d[axis].into()));
+        let apart = add(lane::times(self.normal[0][i], d[0]), lane::times(self.normal[1][i], d[1]));
+        let phi = [a.phi as i32, b.phi as i32];
+        [0, 1].map(|at| {
+            let arm = self.points[at].arm.map(|arm| arm[i]);
+            lane::round::<28>(add(apart, sub(mul(arm[0], phi[0]), mul(arm[1], phi[1]))))
+        })
+    }
+
+    /// Of a contact whose separations are of now: those with which the tick would have begun.
+    pub(crate) fn backdate(&mut self, i: usize, movers: &[Mover]) {
+        let [a, b] = [0, 1].map(|body: usize| &movers[self.bodies[body][i] as usize]);
+        let moved = self.moved(i, a, b);
+        for (separation, moved) in self.separation.iter_mut().zip(moved) {
+            if separation[i] < i32::MAX {
+                separation[i] = lane::limit(sub(separation[i].into(), moved));
+            }
+        }
+    }
+
+    /// A free lane in which a contact of these bodies shares none that moves; `free`: by place, what does not.
+    pub(crate) fn vacancy(&self, places: [u32; 2], free: &[bool]) -> Option<usize> {
+        let shares = |place: &u32| places.contains(place) && !free[*place as usize];
+        if self.bodies.as_flattened().iter().any(shares) {
+            return None;
+        }
+        (0..LANES).find(|&i| self.bodies[0][i] == self.bodies[1][i])
     }
 
     /// What the last tick's impulses do to the bodies.

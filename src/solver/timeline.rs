@@ -19,7 +19,7 @@ use super::strike::{ONE, Speed, Strike, Weight};
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Touch};
 use crate::motion::{Drive, Fault};
-use crate::narrow::{Clearance, first_touch};
+use crate::narrow::{Clearance, Manifold, first_touch};
 use crate::num::{lane::next, mul};
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -42,6 +42,8 @@ const BUDGET_EACH: u32 = 8;
 /// How often a pair is answered in a tick before its bodies go on as one while they touch: what rolls on another, or is
 /// struck to and fro, would close again and again. Not what is elastic.
 const OFTEN: u32 = 8;
+/// How often a pair that rows push is answered in a tick before they hold it.
+const AGAIN: u32 = 3;
 /// Contacts that rows hold are struck on so often only, unless they are elastic: then rows have them back.
 const PASSED_ON: u32 = 8;
 
@@ -113,6 +115,15 @@ impl Stage<'_> {
     }
 }
 
+/// A pair of the tick whose bodies rows know, and which an impact left at rest: where it touches when the substep ends.
+#[derive(Debug)]
+pub(crate) struct Settled {
+    pub(crate) pair: u32,
+    pub(crate) manifold: Manifold,
+    /// From a's centre to b's, Q32 m.
+    pub(crate) between: [i64; 2],
+}
+
 /// The impacts of a tick. Nothing in it lasts.
 #[derive(Debug, Default)]
 pub(crate) struct Timeline {
@@ -130,6 +141,9 @@ pub(crate) struct Timeline {
     pub(crate) met: Vec<u32>,
     /// Pairs whose rows are out for the rest of the tick.
     pub(crate) retired: Vec<u32>,
+    /// Pairs that came to rest in this substep, by their places among the engaged; and what rows are to hold.
+    settling: Vec<u32>,
+    pub(crate) settled: Vec<Settled>,
     /// What happened, and how many answers there were.
     pub(crate) collisions: Vec<Collision>,
     order: u32,
@@ -158,6 +172,8 @@ impl Timeline {
         self.late.clear();
         self.met.clear();
         self.retired.clear();
+        self.settling.clear();
+        self.settled.clear();
         self.collisions.clear();
         self.order = 0;
     }
@@ -283,6 +299,7 @@ impl Timeline {
                 self.answer([from, to], stage, movers, faults);
             }
         }
+        self.settle(to, stage);
     }
 
     /// Takes the pairs that meet at a time out of the queue, in order.

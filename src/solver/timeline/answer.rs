@@ -4,7 +4,7 @@ use super::super::flight::{Flight, NONE, State, rim};
 use super::super::mover::Movers;
 use super::super::scales::weight;
 use super::super::strike::{LIMIT, ONE, Strike, solve};
-use super::{Engaged, FLAT, LATE, LATER, LEAP, MANY, MOST, NEVER, OFTEN, REACH, Stage, Timeline};
+use super::{AGAIN, Engaged, FLAT, LATE, LATER, LEAP, MANY, MOST, NEVER, OFTEN, REACH, Settled, Stage, Timeline};
 use crate::contact::{Collision, Pace};
 use crate::geom::{Rot, Vec2};
 use crate::motion::{Bound, Fault};
@@ -39,7 +39,11 @@ impl Timeline {
         self.lean(time, stage);
         solve(&mut self.strikes, &self.restitutions, &self.weights, &mut self.speeds, &mut self.before);
         for (&at, &restitution) in self.members.iter().zip(&self.restitutions) {
-            self.engaged[at as usize].rests = restitution == 0;
+            let pair = &mut self.engaged[at as usize];
+            pair.rests = restitution == 0;
+            if (pair.rests || pair.answers >= AGAIN) && pair.restitution < ONE && !pair.held && pair.pair < LATE {
+                self.settling.push(at);
+            }
         }
         for at in 0..self.locals.len() {
             self.change(at, time, span, stage, movers, faults);
@@ -271,6 +275,33 @@ impl Timeline {
             }
             if mobility.moves() {
                 gain[2] = add_sat(gain[2], mobility.over_sigma(change[2], 48u32.saturating_sub(k), 48));
+            }
+        }
+    }
+
+    /// What impacts of this substep left at rest between bodies that rows know, rows hold from its end on: else gravity and
+    /// the neighbours bring it together again in every substep.
+    pub(super) fn settle(&mut self, to: i64, stage: &Stage<'_>) {
+        let Timeline { engaged, flights, settling, settled, .. } = self;
+        settling.sort_unstable_by_key(|&at| engaged[at as usize].colliders);
+        settling.dedup();
+        for at in settling.drain(..) {
+            let pair = &mut engaged[at as usize];
+            let [a, b] = pair.flights.map(|place| flights.list[place as usize]);
+            let known = |flight: &Flight| flight.place != 0 || stage.mobilities[flight.slot as usize].fixed;
+            if !known(&a) || !known(&b) {
+                continue;
+            }
+            let outlines = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
+            let (p, q) = (a.at(to, stage.scales), b.at(to, stage.scales));
+            let placed = [(outlines[0], &p), (outlines[1], &q)]
+                .map(|(outline, state)| Placed::new(outline, Rot::new(Angle::from_bits(state.angle))));
+            let between = [0, 1].map(|axis: usize| q.x[axis].saturating_sub(p.x[axis]));
+            let manifold = collide(&placed[0], &placed[1], between, stage.scales.margins.base);
+            if manifold.count > 0 {
+                pair.held = true;
+                pair.least = stage.scales.least_strike(pair.restitution, true);
+                settled.push(Settled { pair: pair.pair, manifold, between });
             }
         }
     }
