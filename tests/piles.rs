@@ -11,7 +11,7 @@ use std::time::Instant;
 use tamias2d::{BodyDef, BodyKind, World};
 
 /// A pile of boxes, polygons and discs between walls, dropped from a grid.
-fn heap(count: u32, e: f64, seed: u64) -> World {
+fn heap(count: u32, e: f64, seed: u64, discs: bool) -> World {
     let (mut world, mut rng) = (world(0.0, -9.81), Rng(seed));
     add(&mut world, fixed(0.0, -1.0, surface(rectangle(60.0, 2.0), 0.6, e)));
     for x in [-9.0, 9.0] {
@@ -20,7 +20,7 @@ fn heap(count: u32, e: f64, seed: u64) -> World {
     for at in 0..count {
         let size = 0.4 + 0.5 * rng.unit();
         let shape = match rng.below(4) {
-            0 => disc(size * 0.5),
+            0 if discs => disc(size * 0.5),
             1 => {
                 let corner = |x: f64, y: f64| (x * size, y * size);
                 polygon(&[corner(-0.5, -0.4), corner(0.6, -0.5), corner(0.5, 0.4), corner(-0.1, 0.6)])
@@ -49,8 +49,11 @@ fn motion(world: &World) -> f64 {
 }
 
 /// Lets a pile fall for as long as its highest body needs, and then `seconds` more.
-fn settles(count: u32, e: f64, seconds: f64) {
-    let mut world = heap(count, e, 1);
+///
+/// Polygons come to rest all of them. A disc that the pile presses on another one, or into a trough, rolls to and fro like
+/// a pendulum and rocks its neighbours: nothing in the model slows rolling, and it loses no energy in a minute.
+fn settles(count: u32, e: f64, seconds: f64, discs: bool) {
+    let mut world = heap(count, e, 1, discs);
     let height = 1.0 + f64::from(count / 12) * 1.3;
     let landed = ((2.0 * height / 9.81).sqrt() * 60.0).ceil() as u64;
     let ticks = landed + (seconds * 60.0) as u64;
@@ -82,12 +85,12 @@ fn settles(count: u32, e: f64, seconds: f64) {
         gain / fall,
         world.status().entries()
     );
-    // A disc may roll on, and one on the top fall over in the end.
-    assert!(restless(&world) <= 3, "{count}, e {e}: {} move, {speed} m/s", restless(&world));
-    assert!(motion(&world) < 1e-5 * fall, "{count}, e {e}: {} J of {fall}", motion(&world));
+    let (moving, most) = if discs { (count as usize / 4, 1e-4) } else { (0, 1e-12) };
+    assert!(restless(&world) <= moving, "{count}, e {e}: {} move, {speed} m/s", restless(&world));
+    assert!(motion(&world) < most * fall, "{count}, e {e}: {} J of {fall}", motion(&world));
     assert!(settled < 0.02, "{count}, e {e}: overlap {settled} m");
-    // What rows push apart that overlapped as it landed: 3.5e-4 at most was seen.
-    assert!(gain < 1e-3 * fall, "{count}, e {e}: KE + PE grew by {gain} J over its least; {fall} J were lost");
+    // What rows push apart that overlapped as it landed: 9e-5 at most was seen.
+    assert!(gain < 3e-4 * fall, "{count}, e {e}: KE + PE grew by {gain} J over its least; {fall} J were lost");
     for body in world.bodies().filter(|body| body.kind() == BodyKind::Dynamic) {
         let (x, y) = body.position().to_f64();
         assert!(x.abs() < 8.0 && y > 0.0, "{count}, e {e}: {} is at {x}, {y}", body.id());
@@ -98,42 +101,42 @@ fn settles(count: u32, e: f64, seconds: f64) {
 
 #[test]
 fn a_pile_of_100_comes_to_rest() {
-    for e in [0.0, 0.3, 0.5] {
-        settles(100, e, 10.0);
+    for e in [0.0, 0.3, 0.5, 0.8, 0.9] {
+        settles(100, e, 10.0, false);
     }
 }
 
 #[test]
-fn a_pile_of_100_that_bounces_well_comes_to_rest() {
-    settles(100, 0.9, 10.0);
-}
-
-#[test]
-fn a_pile_of_100_that_bounces_comes_to_rest() {
-    settles(100, 0.8, 10.0);
+fn a_pile_of_100_with_discs_comes_to_rest_but_for_what_rolls() {
+    for e in [0.0, 0.3, 0.5, 0.8, 0.9] {
+        settles(100, e, 10.0, true);
+    }
 }
 
 #[test]
 fn a_pile_of_300_comes_to_rest() {
-    settles(300, 0.0, 10.0);
-}
-
-#[test]
-fn a_pile_of_300_that_bounces_a_little_comes_to_rest() {
-    settles(300, 0.3, 10.0);
-}
-
-#[test]
-fn a_pile_of_300_that_bounces_comes_to_rest() {
-    settles(300, 0.5, 10.0);
-}
-
-#[test]
-fn a_pile_of_300_that_bounces_more_comes_to_rest() {
-    settles(300, 0.8, 10.0);
+    for e in [0.0, 0.3, 0.5] {
+        settles(300, e, 10.0, false);
+    }
 }
 
 #[test]
 fn a_pile_of_300_that_bounces_well_comes_to_rest() {
-    settles(300, 0.9, 10.0);
+    for e in [0.8, 0.9] {
+        settles(300, e, 10.0, false);
+    }
+}
+
+#[test]
+fn a_pile_of_300_with_discs_comes_to_rest_but_for_what_rolls() {
+    for e in [0.0, 0.3, 0.5] {
+        settles(300, e, 10.0, true);
+    }
+}
+
+#[test]
+fn a_pile_of_300_with_discs_that_bounces_well_comes_to_rest_but_for_what_rolls() {
+    for e in [0.8, 0.9] {
+        settles(300, e, 10.0, true);
+    }
 }

@@ -166,7 +166,8 @@ impl Solver {
         drive: &Drive,
         faults: &mut Vec<Fault>,
     ) {
-        let Solver { mobilities, scales, movers, before, free, places, fast, timeline, colors, blocks, kernel, .. } = self;
+        let Solver { mobilities, scales, movers, before, free, places, fast, timeline, colors, blocks, kernel, .. } =
+            self;
         let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[] };
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
@@ -199,7 +200,13 @@ impl Solver {
                     let seat = colors.late(blocks, both, free);
                     let (block, i) = (&mut blocks[seat / LANES], seat % LANES);
                     let mobility = pair.bodies.map(|slot| &mobilities[slot as usize]);
-                    Joint::new(pair, both, between, mobility).write(block, i, &Contact::default(), pair.friction, scales);
+                    Joint::new(pair, both, between, mobility).write(
+                        block,
+                        i,
+                        &Contact::default(),
+                        pair.friction,
+                        scales,
+                    );
                     block.backdate(i, &movers.lanes);
                 }
                 let all = substep % RELAX == 0 || substep == scales.substeps;

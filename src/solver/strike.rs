@@ -10,6 +10,8 @@
 //! | arm α | Q48 | 8 |
 //! | κ | Q48 | 120² + 1 < 2¹⁴: a body's gyration is at least 1/120 of its reach |
 
+mod contact;
+
 use super::mobility::Mobility;
 use crate::geom::Vec2;
 use crate::narrow::Manifold;
@@ -230,74 +232,6 @@ impl Strike {
         self.friction.impulse = 0;
         self.points.iter_mut().chain(self.brace.iter_mut().flatten()).for_each(|row| row.impulse = 0);
     }
-
-    /// Once through friction and both points; the greatest change of an impulse.
-    fn sweep(&mut self, speeds: &mut [Speed]) -> i64 {
-        let mut changed = 0;
-        if let Some(brace) = &mut self.brace {
-            for row in brace.iter_mut().chain([&mut self.friction, &mut self.points[0]]) {
-                let [a, b] = self.bodies.map(|at| speeds[at]);
-                let change = mul(row.speed(&a, &b), row.inverse, 62).saturating_neg();
-                row.impulse = row.impulse.saturating_add(change);
-                give(self.bodies, self.share, row, change, speeds);
-                changed = changed.max(change.saturating_abs());
-            }
-            return changed;
-        }
-        if self.rough > 0 {
-            let [a, b] = self.bodies.map(|at| speeds[at]);
-            let [load, _] = self.impulse();
-            let most = mul(load, self.rough, 48);
-            let slip = self.friction.speed(&a, &b);
-            let change = mul(slip, self.friction.inverse, 62);
-            let impulse = self.friction.impulse.saturating_sub(change).clamp(most.saturating_neg(), most);
-            let change = impulse.saturating_sub(self.friction.impulse);
-            self.friction.impulse = impulse;
-            give(self.bodies, self.share, &self.friction, change, speeds);
-            changed = change.saturating_abs();
-        }
-        let change = self.answer(speeds);
-        for (at, change) in change.into_iter().enumerate() {
-            self.points[at].impulse = self.points[at].impulse.saturating_add(change);
-            give(self.bodies, self.share, &self.points[at], change, speeds);
-            changed = changed.max(change.saturating_abs());
-        }
-        changed
-    }
-
-    /// The changes of the points' impulses that give them their target speeds, none of them pulling.
-    fn answer(&self, speeds: &[Speed]) -> [i64; 2] {
-        let [a, b] = self.bodies.map(|at| speeds[at]);
-        let want = [0, 1].map(|at: usize| self.points[at].target.saturating_sub(self.points[at].speed(&a, &b)));
-        let least = [0, 1].map(|at: usize| self.points[at].impulse.saturating_neg());
-        let alone = |at: usize, want: i64| mul(want, self.points[at].inverse, 62).max(least[at]);
-        let Some(determinant) = self.determinant else {
-            // One point, or two that are nearly the same: the one that wants more.
-            let deeper = usize::from(self.count > 1 && want[1] > want[0]);
-            let mut change = [0; 2];
-            change[deeper] = alone(deeper, want[deeper]);
-            return change;
-        };
-        let both = [0, 1].map(|at: usize| {
-            let other = 1 ^ at;
-            let change = product(self.points[other].kappa, want[at]).saturating_sub(product(self.couple, want[other]));
-            over(change, determinant)
-        });
-        if both[0] >= least[0] && both[1] >= least[1] {
-            return both;
-        }
-        // One point gives back what it has, and the other answers alone: right if the first then separates by itself.
-        let single = |free: usize| {
-            let held = 1 ^ free;
-            let mut change = least;
-            change[free] = alone(free, want[free].saturating_sub(mul(self.couple, least[held], 48)));
-            let own = mul(self.points[held].kappa, least[held], 48);
-            let speed = own.saturating_add(mul(self.couple, change[free], 48));
-            (change, speed.saturating_sub(want[held]))
-        };
-        let [(first, second_parts), (second, first_parts)] = [single(0), single(1)];
-        if second_parts >= first_parts { first } else { second }
-    }
 }
 
 /// Q96 from two of Q48.
@@ -404,5 +338,5 @@ fn gains(weights: &[Weight], before: &[Speed], after: &[Speed]) -> bool {
 
 /// Goes through contacts until no impulse changes by more than `enough`; false if that takes more rounds than `most`.
 fn rounds(strikes: &mut [Strike], speeds: &mut [Speed], enough: i64, most: u32) -> bool {
-    (0..most).any(|_| strikes.iter_mut().map(|strike| strike.sweep(speeds)).fold(0, i64::max) <= enough)
+    (0..most).any(|_| strikes.iter_mut().map(|strike| strike.sweep(speeds, enough)).fold(0, i64::max) <= enough)
 }

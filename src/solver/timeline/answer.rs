@@ -249,7 +249,9 @@ impl Timeline {
         let Timeline { flights, locals, speeds, strikes, restitutions, weights, before, .. } = self;
         let mut resting = restitutions.iter().map(|&restitution| restitution == 0);
         strikes.retain(|_| resting.next().unwrap_or(false));
-        if strikes.is_empty() {
+        // Those that rows push have their forces already.
+        let pressed = |&place: &u32| flights.list[place as usize].gain != [0; 3];
+        if strikes.is_empty() || !locals.iter().any(pressed) {
             return;
         }
         let of =
