@@ -192,6 +192,7 @@ impl Solver {
                     let seat = colors.seats[touch.pairs[pair as usize].row as usize] as usize;
                     blocks[seat / LANES].retire(seat % LANES);
                 }
+                movers.welcome(mobilities, &timeline.past, before, free);
                 for Settled { pair, manifold, between } in timeline.settled.drain(..) {
                     let pair = &mut touch.pairs[pair as usize];
                     (pair.manifold, pair.row) = (manifold, places.len() as u32);

@@ -1,6 +1,6 @@
 //! Bodies as the rows see them, for one tick: velocities in full, positions as what changed since the tick began.
 
-use super::flight::{State, rim};
+use super::flight::{Past, State, rim};
 use super::mobility::Mobility;
 use super::scales::{SPEED_MAX, Scales};
 use crate::body::Bodies;
@@ -87,9 +87,10 @@ impl Movers {
         if self.places[at] != 0 || mobility.fixed {
             return self.places[at];
         }
-        let (v, omega) = (bodies.velocity(at), bodies.omega.get(at));
-        let line = |v: Velocity| round_shift(v.to_bits().into(), scales.shift) as i64;
-        let start = [line(v.x), line(v.y), rim(omega.to_bits(), mobility, scales)];
+        self.enter(slot, speeds(bodies, at, mobility, scales), mobility, scales)
+    }
+
+    fn enter(&mut self, slot: u32, start: [i64; 3], mobility: &Mobility, scales: &Scales) -> u32 {
         // The rim below the bound of speed, and less than an eighth of a turn in a substep: σ·(π/4)/h.
         let sigma = i128::from(mobility.sigma);
         let fast = div(sigma.saturating_mul(SPEED_MAX.into()) << 48, mobility.reach.max(1).into());
@@ -100,7 +101,38 @@ impl Movers {
         let begin = start.map(lane::bounded);
         self.lanes.push(Mover { v: [begin[0], begin[1]], w: begin[2], ..Mover::default() });
         self.courses.push(Course { start, begin, spin_max, slot, ..Course::default() });
-        self.places[at] = place;
+        self.places[slot as usize] = place;
+        place
+    }
+
+    /// Takes a body in that rows did not know so far, at the end of a substep; it is `now` where impacts have brought it from
+    /// where the tick began, and `bodies` are where free motion ends.
+    pub(crate) fn join(
+        &mut self,
+        slot: u32,
+        [begin, now]: [&State; 2],
+        bodies: &Bodies,
+        mobility: &Mobility,
+        scales: &Scales,
+    ) -> u32 {
+        let k = scales.shift;
+        let speed = |state: &State| {
+            let line = |v: i64| round_shift(v.into(), k) as i64;
+            [line(state.v[0]), line(state.v[1]), rim(state.omega, mobility, scales)]
+        };
+        let place = self.enter(slot, speed(begin), mobility, scales);
+        let (mover, course) = (&mut self.lanes[place as usize], &mut self.courses[place as usize]);
+        course.kick = kick(&course.start, speeds(bodies, slot as usize, mobility, scales), scales);
+        let speed = speed(now).map(lane::bounded);
+        [mover.v[0], mover.v[1], mover.w] = speed;
+        course.begin = [0, 1, 2].map(|axis: usize| lane::bounded(speed[axis].saturating_sub(course.kick[axis])));
+        // The inverse of `state`: ways over h.
+        let over = |way: i64, by: i64, bits: u32| div(i128::from(way) << bits, by.into()) as i64;
+        let gone = |axis: usize| over(now.x[axis].saturating_sub(begin.x[axis]), scales.line, 51u32.saturating_sub(k));
+        let rolled = mul(now.angle.saturating_sub(begin.angle), mobility.sigma, k.saturating_add(30));
+        course.sum = [gone(0), gone(1), over(rolled, scales.turn, 33)];
+        (course.pushed, course.hit) = (true, true);
+        mover.go(&course.sum, scales);
         place
     }
 
@@ -108,13 +140,7 @@ impl Movers {
     pub(crate) fn take_kicks(&mut self, bodies: &Bodies, mobilities: &[Mobility], scales: &Scales) {
         for course in &mut self.courses[1..] {
             let slot = course.slot as usize;
-            let (v, omega) = (bodies.velocity(slot), bodies.omega.get(slot));
-            let line = |v: Velocity| round_shift(v.to_bits().into(), scales.shift) as i64;
-            let end = [line(v.x), line(v.y), rim(omega.to_bits(), &mobilities[slot], scales)];
-            course.kick = [0, 1, 2].map(|axis| {
-                let change = i128::from(end[axis]).saturating_sub(course.start[axis].into());
-                lane::bounded(div(change, scales.substeps.into()) as i64)
-            });
+            course.kick = kick(&course.start, speeds(bodies, slot, &mobilities[slot], scales), scales);
         }
     }
 
@@ -219,6 +245,26 @@ impl Movers {
         free.extend(self.courses.iter().map(place));
     }
 
+    /// Whether rows know of no body.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.lanes.len() < 2
+    }
+
+    /// What rows keep of each, for those that joined.
+    pub(crate) fn welcome(
+        &self,
+        mobilities: &[Mobility],
+        past: &Past,
+        before: &mut Vec<[i64; 6]>,
+        free: &mut Vec<bool>,
+    ) {
+        for course in self.courses.iter().skip(before.len()) {
+            let State { x, angle, v, omega } = past.state(course.slot as usize);
+            before.push([x[0], x[1], angle, v[0], v[1], omega]);
+            free.push(!mobilities[course.slot as usize].moves());
+        }
+    }
+
     /// Notes that a contact pushed these bodies.
     pub(crate) fn hit(&mut self, places: [u32; 2]) {
         for place in places {
@@ -283,6 +329,21 @@ impl Movers {
         before.push([0; 6]);
         before.extend(self.courses[1..].iter().map(|course| columns.map(|column| column[course.slot as usize])));
     }
+}
+
+/// A body's velocities as rows have them.
+fn speeds(bodies: &Bodies, slot: usize, mobility: &Mobility, scales: &Scales) -> [i64; 3] {
+    let (v, omega) = (bodies.velocity(slot), bodies.omega.get(slot));
+    let line = |v: Velocity| round_shift(v.to_bits().into(), scales.shift) as i64;
+    [line(v.x), line(v.y), rim(omega.to_bits(), mobility, scales)]
+}
+
+/// What forces add in a substep, of velocities when the tick begins and when free motion ends.
+fn kick(start: &[i64; 3], end: [i64; 3], scales: &Scales) -> [i64; 3] {
+    [0, 1, 2].map(|axis| {
+        let change = i128::from(end[axis]).saturating_sub(start[axis].into());
+        lane::bounded(div(change, scales.substeps.into()) as i64)
+    })
 }
 
 /// π/4 with 30 fraction bits.

@@ -225,9 +225,10 @@ impl Block {
         }
     }
 
-    /// Whether a contact bears a load.
+    /// Whether a contact bears a load, or the friction of one that it bore a substep ago: taken out now, that would act on
+    /// for the rest of the tick.
     pub(crate) fn bears(&self, i: usize) -> bool {
-        self.points[0].impulse[i] > 0 || self.points[1].impulse[i] > 0
+        [&self.friction, &self.points[0], &self.points[1]].iter().any(|row| row.impulse[i] != 0)
     }
 
     /// Whether a contact pushed in this tick.

@@ -43,7 +43,7 @@ const BUDGET_EACH: u32 = 8;
 /// struck to and fro, would close again and again. Not what is elastic.
 const OFTEN: u32 = 8;
 /// How often a pair that rows push is answered in a tick before they hold it.
-const AGAIN: u32 = 3;
+const AGAIN: u32 = 2;
 /// Contacts that rows hold are struck on so often only, unless they are elastic: then rows have them back.
 const PASSED_ON: u32 = 8;
 
@@ -127,7 +127,7 @@ pub(crate) struct Settled {
 /// The impacts of a tick. Nothing in it lasts.
 #[derive(Debug, Default)]
 pub(crate) struct Timeline {
-    past: Past,
+    pub(crate) past: Past,
     pub(crate) flights: Flights,
     /// When the substep began.
     from: i64,
@@ -299,7 +299,7 @@ impl Timeline {
                 self.answer([from, to], stage, movers, faults);
             }
         }
-        self.settle(to, stage);
+        self.settle(to, stage, movers);
     }
 
     /// Takes the pairs that meet at a time out of the queue, in order.

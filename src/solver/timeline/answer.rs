@@ -282,29 +282,39 @@ impl Timeline {
     }
 
     /// What impacts of this substep left at rest between bodies that rows know, rows hold from its end on: else gravity and
-    /// the neighbours bring it together again in every substep.
-    pub(super) fn settle(&mut self, to: i64, stage: &Stage<'_>) {
-        let Timeline { engaged, flights, settling, settled, .. } = self;
+    /// the neighbours bring it together again in every substep. Bodies that are answered again and again get to know rows.
+    pub(super) fn settle(&mut self, to: i64, stage: &Stage<'_>, movers: &mut Movers) {
+        let Timeline { engaged, flights, settling, settled, past, .. } = self;
         settling.sort_unstable_by_key(|&at| engaged[at as usize].colliders);
         settling.dedup();
         for at in settling.drain(..) {
             let pair = &mut engaged[at as usize];
             let [a, b] = pair.flights.map(|place| flights.list[place as usize]);
-            let known = |flight: &Flight| flight.place != 0 || stage.mobilities[flight.slot as usize].fixed;
-            if !known(&a) || !known(&b) {
+            let stranger = |flight: &Flight| flight.place == 0 && !stage.mobilities[flight.slot as usize].fixed;
+            let strange = stranger(&a) || stranger(&b);
+            if strange && (pair.answers < AGAIN || movers.is_empty()) {
                 continue;
             }
             let outlines = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
-            let (p, q) = (a.at(to, stage.scales), b.at(to, stage.scales));
-            let placed = [(outlines[0], &p), (outlines[1], &q)]
-                .map(|(outline, state)| Placed::new(outline, Rot::new(Angle::from_bits(state.angle))));
-            let between = [0, 1].map(|axis: usize| q.x[axis].saturating_sub(p.x[axis]));
+            let states = [a.at(to, stage.scales), b.at(to, stage.scales)];
+            let placed =
+                [0, 1].map(|body: usize| Placed::new(outlines[body], Rot::new(Angle::from_bits(states[body].angle))));
+            let between = [0, 1].map(|axis: usize| states[1].x[axis].saturating_sub(states[0].x[axis]));
             let manifold = collide(&placed[0], &placed[1], between, stage.scales.margins.base);
-            if manifold.count > 0 {
-                pair.held = true;
-                pair.least = stage.scales.least_strike(pair.restitution, true);
-                settled.push(Settled { pair: pair.pair, manifold, between });
+            if manifold.count == 0 {
+                continue;
             }
+            for (place, now) in pair.flights.into_iter().zip(&states) {
+                let flight = &mut flights.list[place as usize];
+                if stranger(flight) {
+                    let begin = past.state(flight.slot as usize);
+                    let mobility = &stage.mobilities[flight.slot as usize];
+                    flight.place = movers.join(flight.slot, [&begin, now], stage.bodies, mobility, stage.scales);
+                }
+            }
+            pair.held = true;
+            pair.least = stage.scales.least_strike(pair.restitution, true);
+            settled.push(Settled { pair: pair.pair, manifold, between });
         }
     }
 
