@@ -20,6 +20,7 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 mod timeline;
+mod turning;
 
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Contact, Contacts, NEW, Pair, Touch};
@@ -36,6 +37,7 @@ use rows::{Block, LANES};
 pub(crate) use scales::Scales;
 use scales::weight;
 use timeline::{Stage, Timeline};
+use turning::{Turning, turns};
 
 /// How many substeps pass between sweeps that take back what pushing overlaps apart added to velocities: there is one
 /// after every fifth substep and after the last; and in between for contacts with a row that pushes without bearing a load,
@@ -60,6 +62,8 @@ pub(crate) struct Solver {
     heavy: Vec<bool>,
     /// Pairs that may strike.
     fast: Vec<u32>,
+    /// Pairs that turn so fast that their rows are made anew in each substep.
+    turning: Vec<u32>,
     timeline: Timeline,
     colors: Colors,
     blocks: Vec<Block>,
@@ -91,6 +95,7 @@ impl Solver {
             places,
             heavy,
             fast,
+            turning,
             timeline,
             colors,
             blocks,
@@ -101,6 +106,7 @@ impl Solver {
         places.clear();
         heavy.clear();
         fast.clear();
+        turning.clear();
         for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !pair.sensor) {
             let swings = || swings(pair, bodies, drive, mobilities, scales);
             if pair.manifold.count == 0 || strikes(pair, bodies, drive, scales, false) || swings() {
@@ -127,8 +133,11 @@ impl Solver {
             pair.depth = deepest.unwrap_or(0).max(0).saturating_add(ROUNDING);
             pair.manifold.count = 0;
         }
-        for pair in touch.pairs.iter_mut().filter(|pair| pair.manifold.count > 0) {
+        for (at, pair) in touch.pairs.iter_mut().enumerate().filter(|(_, pair)| pair.manifold.count > 0) {
             pair.row = places.len() as u32;
+            if turns(pair, bodies, mobilities, scales) {
+                turning.push(at as u32);
+            }
             places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
             heavy.push(pair.old != NEW && Scales::is_heavy(contacts.get(pair.old as usize).normal));
         }
@@ -166,7 +175,7 @@ impl Solver {
         drive: &Drive,
         faults: &mut Vec<Fault>,
     ) {
-        let Solver { mobilities, scales, movers, before, places, fast, timeline, colors, blocks, kernel, .. } = self;
+        let Solver { mobilities, scales, movers, before, places, fast, turning, timeline, colors, blocks, kernel, .. } = self;
         let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[] };
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
@@ -180,11 +189,17 @@ impl Solver {
             }
             for substep in 1..=scales.substeps {
                 movers.begin(substep == 1);
+                for &pair in turning.iter().filter(|_| substep > 1) {
+                    let anew = Turning { bodies, colliders, mobilities, scales, before };
+                    let pair = &mut touch.pairs[pair as usize];
+                    let seat = colors.seats[pair.row as usize] as usize;
+                    anew.renew(pair, places[pair.row as usize], &mut blocks[seat / LANES], seat % LANES, movers);
+                }
                 for block in blocks.iter_mut() {
                     kernel.solve::<true>(block, u8::MAX, &mut movers.lanes, scales);
                 }
                 movers.drift(scales);
-                timeline.run(scales.span(substep), &Stage { blocks, ..stage }, movers, faults);
+                timeline.run(scales.span(substep), &Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks }, movers, faults);
                 for pair in timeline.retired.drain(..) {
                     let seat = colors.seats[touch.pairs[pair as usize].row as usize] as usize;
                     blocks[seat / LANES].retire(seat % LANES);

@@ -6,6 +6,7 @@
 
 use super::mover::Mover;
 use super::scales::{SLOP, Scales};
+use crate::contact::Contact;
 use crate::num::lane::{self, add, mul, sub};
 
 /// Contacts side by side.
@@ -93,6 +94,32 @@ impl Block {
         (self.bodies[0][i], self.bodies[1][i]) = (0, 0);
     }
 
+    /// Whether a contact has been taken out.
+    pub(crate) fn is_retired(&self, i: usize) -> bool {
+        self.bodies[0][i] == self.bodies[1][i]
+    }
+
+    /// The impulses that a contact carries on.
+    pub(crate) fn carried(&self, i: usize) -> Contact {
+        let normal = [0, 1].map(|at| self.points[at].carried(i));
+        Contact { normal, tangent: self.friction.carried(i), ..Contact::default() }
+    }
+
+    /// Has `write` write a contact anew between sweeps, from where its bodies are now. Its impulses are taken back along
+    /// the old directions, and those that go on are given along the new ones: warm starting repeats what the rows hold.
+    pub(crate) fn renew(&mut self, i: usize, movers: &mut [Mover], write: impl FnOnce(&mut Block)) {
+        let given = |block: &Block| [&block.friction, &block.points[0], &block.points[1]].map(|row| row.impulse[i]);
+        let peak = [self.peak[0][i], self.peak[1][i]];
+        self.give(i, movers, given(self).map(i32::saturating_neg));
+        write(self);
+        self.give(i, movers, given(self));
+        for at in 0..2 {
+            self.peak[at][i] = self.peak[at][i].max(peak[at]);
+            let moved = self.moved(i, at, movers);
+            self.separation[at][i] = lane::limit(sub(self.separation[at][i].into(), moved));
+        }
+    }
+
     /// One sweep over the contacts whose bits are set: friction first, then the normals, which must hold. When `BIASED`,
     /// overlaps are pushed apart through the soft rows; else the rows only stop what approaches.
     #[inline(never)]
@@ -152,11 +179,8 @@ impl Block {
         let mut speed = [0, 1].map(|at| add(along, turning(&self.points[at], w)));
         let load = [0, 1].map(|at| self.points[at].impulse[i]);
 
-        let d = [0, 1].map(|axis| sub(a.d[axis].into(), b.d[axis].into()));
-        let apart = add(lane::times(nx, d[0]), lane::times(ny, d[1]));
-        let phi = [a.phi as i32, b.phi as i32];
         let separation = [0, 1].map(|at| {
-            let moved = lane::round::<28>(add(apart, turning(&self.points[at], phi)));
+            let moved = self.moved(i, at, movers);
             lane::limit(add(self.separation[at][i].into(), moved))
         });
 
@@ -187,6 +211,16 @@ impl Block {
             self.give(i, movers, change);
         }
         (change[1].abs().max(change[2].abs()) >= BLOW as i32, pushes_first | pushes_second)
+    }
+
+    /// How much farther apart a point is than when the tick began, by its direction and arms: Q26.
+    #[inline(always)]
+    fn moved(&self, i: usize, at: usize, movers: &[Mover]) -> i64 {
+        let [a, b] = [0, 1].map(|body: usize| &movers[self.bodies[body][i] as usize]);
+        let d = [0, 1].map(|axis| sub(a.d[axis].into(), b.d[axis].into()));
+        let apart = add(lane::times(self.normal[0][i], d[0]), lane::times(self.normal[1][i], d[1]));
+        let arm = &self.points[at].arm;
+        lane::round::<28>(add(apart, sub(mul(arm[0][i], a.phi as i32), mul(arm[1][i], b.phi as i32))))
     }
 
     /// What the last tick's impulses do to the bodies.
