@@ -44,8 +44,10 @@ pub(crate) struct Flight {
     pub(crate) weight: [i64; 2],
     /// The first of the pairs in which it may be struck, or [`NONE`].
     pub(crate) first: u32,
-    /// How often it was struck in this tick, and a box around its way since then.
+    /// How often it was struck in this tick.
     pub(crate) strikes: u32,
+    /// Whether it left its free way, struck or sent astray by rows; and then a box around its way since.
+    pub(crate) aside: bool,
     pub(crate) around: Aabb,
     /// The number of the last answer after which its pairs were looked at, from 1 on.
     pub(crate) looked: u32,
@@ -75,8 +77,9 @@ impl Flight {
         }
     }
 
-    /// Notes the box around its way, for a body of this reach.
+    /// Notes the box around its way, for a body of this reach. What rows know may yet be pushed aside a little.
     pub(crate) fn surround(&mut self, reach: i64, scales: &Scales) {
+        let reach = reach.saturating_add(if self.place != 0 { scales.astray() } else { 0 });
         let (from, to) = (&self.state, self.at(TICK, scales));
         // A parabola lies within the triangle of its ends and where its first velocity leads in half of the time.
         let half = TICK.saturating_sub(self.time) / 2;
@@ -88,6 +91,13 @@ impl Flight {
         };
         let [(left, right), (low, high)] = [bound(0), bound(1)];
         self.around = Aabb { min: Vec2::new(left, low), max: Vec2::new(right, high) };
+    }
+
+    /// The box in which a body of this reach is at a time.
+    pub(crate) fn box_at(&self, time: i64, reach: i64, scales: &Scales) -> Aabb {
+        let x = self.at(time, scales).x;
+        let out = |by: i64| Vec2::new(Length::from_bits(x[0].saturating_add(by)), Length::from_bits(x[1].saturating_add(by)));
+        Aabb { min: out(reach.saturating_neg()), max: out(reach) }
     }
 }
 

@@ -141,7 +141,8 @@ impl Solver {
             places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
             heavy.push(pair.old != NEW && Scales::is_heavy(contacts.get(pair.old as usize).normal));
         }
-        if !fast.is_empty() {
+        movers.look_brisk(drive, scales);
+        if !fast.is_empty() || movers.brisk {
             timeline.remember(bodies);
         }
         movers.remember(bodies, before);

@@ -5,7 +5,7 @@ use super::mobility::Mobility;
 use super::scales::{SPEED_MAX, Scales};
 use crate::body::Bodies;
 use crate::geom::Vec2;
-use crate::motion::{Bound, Fault, turn_by};
+use crate::motion::{Bound, Drive, Fault, turn_by};
 use crate::num::{Angle, AngularVelocity, Length, Quantity, Velocity, add_sat, clamp_i64, div, lane, mul, round_shift};
 use core::mem::replace;
 
@@ -54,6 +54,8 @@ struct Course {
     hit: bool,
     /// Whether rows have changed its velocity: until then its way is free motion.
     pushed: bool,
+    /// Whether they turned it aside, in this substep, so far that it may come to where it was not looked for neighbours.
+    aside: bool,
     slowed: bool,
 }
 
@@ -64,6 +66,8 @@ pub(crate) struct Movers {
     courses: Vec<Course>,
     /// By slot of a body: its place here; 0 for none.
     places: Vec<u32>,
+    /// Whether one of them is so fast that rows may send others far from where they would go.
+    pub(crate) brisk: bool,
 }
 
 impl Movers {
@@ -77,6 +81,7 @@ impl Movers {
         self.places.resize(slots, 0);
         self.lanes.clear();
         self.courses.clear();
+        self.brisk = false;
         self.lanes.push(Mover::default());
         self.courses.push(Course { slot: u32::MAX, ..Course::default() });
     }
@@ -102,6 +107,16 @@ impl Movers {
         self.courses.push(Course { start, begin, spin_max, slot, ..Course::default() });
         self.places[at] = place;
         place
+    }
+
+    /// Before the bodies move: notes whether one of them is, or gets by forces, so fast that rows may send others aside.
+    pub(crate) fn look_brisk(&mut self, drive: &Drive, scales: &Scales) {
+        let most = scales.aside.unsigned_abs() / 2;
+        self.brisk = self.courses[1..].iter().any(|course| {
+            let gain = drive.gain(course.slot as usize, scales.margins.tick);
+            course.start.iter().any(|speed| speed.unsigned_abs() > most)
+                || gain.iter().any(|gain| gain.unsigned_abs() >> scales.shift > most)
+        });
     }
 
     /// After the bodies have moved as if nothing touched them: what forces do to them in a substep.
@@ -139,12 +154,17 @@ impl Movers {
     /// Positions by the velocities that rows read, after bounding these.
     pub(crate) fn drift(&mut self, scales: &Scales) {
         const LIMIT: i64 = SPEED_MAX << 48;
+        let brisk = self.brisk;
         for (mover, course) in self.lanes.iter_mut().zip(&mut self.courses).skip(1) {
             let limits = [LIMIT, LIMIT, course.spin_max];
             let now = [mover.v[0], mover.v[1], mover.w];
             let free = |axis: usize| lane::sub(now[axis], course.begin[axis]) == course.kick[axis];
             course.pushed |= !(free(0) && free(1) && free(2));
             let over = |axis: usize| now[axis].unsigned_abs() > limits[axis].unsigned_abs();
+            if brisk {
+                let off = |axis: usize| lane::sub(now[axis], course.start[axis]).unsigned_abs() > scales.aside.unsigned_abs();
+                course.aside = off(0) || off(1);
+            }
             course.cut = [0; 3];
             if over(0) || over(1) || over(2) {
                 let kept = [0, 1, 2].map(|axis| lane::clamp(now[axis], limits[axis].saturating_neg(), limits[axis]));
@@ -167,6 +187,12 @@ impl Movers {
     /// Whether rows have changed its velocity.
     pub(crate) fn is_pushed(&self, place: u32) -> bool {
         self.courses[place as usize].pushed
+    }
+
+    /// The slots of bodies that rows turned aside in this substep.
+    pub(crate) fn turned_aside(&self) -> impl Iterator<Item = u32> + '_ {
+        let courses = if self.brisk { &self.courses[1..] } else { &[] };
+        courses.iter().filter(|course| course.pushed && course.aside).map(|course| course.slot)
     }
 
     /// Whether [`Movers::store`] says where it ends; not for 0.

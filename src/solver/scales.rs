@@ -71,6 +71,8 @@ pub(crate) struct Scales {
     pub(crate) slack: i64,
     /// How near is touching, Q32 m.
     pub(crate) touching: i64,
+    /// The change of speed with which a body comes [`Scales::astray`] within a tick, Q48 m/s over 2^k.
+    pub(crate) aside: i64,
 }
 
 impl Scales {
@@ -96,6 +98,7 @@ impl Scales {
             tick_turn: div(TURN_PER_RADIAN_Q64, i128::from(tick_rate).saturating_mul(2)) as i64,
             slack: SLACK << shift,
             touching: i64::from(SLOP) << shift.saturating_add(6),
+            aside: (MARGIN / 2).saturating_mul(tick_rate.into()) << 16,
         }
     }
 
@@ -151,6 +154,12 @@ impl Scales {
             (false, _) if press == 0 => threshold,
             (false, _) => SPEED << self.shift,
         }
+    }
+
+    /// How far from the way on which it was looked for neighbours a body that rows push may be, Q32 m: half of what is
+    /// looked around for contacts, so that two that meet have come as far as that together.
+    pub(crate) fn astray(&self) -> i64 {
+        self.margins.base / 2
     }
 
     /// The speed of rims from which on what touches elsewhere may follow, Q48 m/s: 1 m/s, 2 cm in a tick.

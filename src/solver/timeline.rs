@@ -8,6 +8,7 @@
 //! Source: conservative advancement after Mirtich (1996); time-ordered events with local body times.
 
 mod answer;
+mod astray;
 mod neighbours;
 
 use super::flight::{Flights, NONE, Past, State, TICK, motion};
@@ -122,7 +123,7 @@ pub(crate) struct Timeline {
     from: i64,
     engaged: Vec<Engaged>,
     queue: BinaryHeap<Reverse<(i64, u32, u32, u32)>>,
-    /// Places of flights that were struck.
+    /// Places of flights that were struck, or that rows sent astray.
     struck: Vec<u32>,
     /// Pairs that were not among those of the tick and met: colliders, bodies.
     pub(crate) late: Vec<[[u32; 2]; 2]>,
@@ -307,6 +308,7 @@ impl Timeline {
         for place in 0..self.flights.list.len() {
             any |= self.push(place, stage, movers);
         }
+        self.look_aside(to, stage, movers);
         for at in 0..if any { self.engaged.len() } else { 0 } {
             let Engaged { flights, held, restitution, .. } = self.engaged[at];
             let pushed = flights.iter().any(|&place| self.flights.list[place as usize].pushed);
@@ -325,9 +327,6 @@ impl Timeline {
             let begin = self.past.state(slot);
             flight.state = movers.state(flight.place, &begin, &stage.mobilities[slot], stage.scales);
             (flight.time, flight.gain, flight.pushed) = (self.from, [0; 3], true);
-            if flight.strikes > 0 {
-                flight.surround(stage.mobilities[slot].reach, stage.scales);
-            }
         }
         pushed
     }

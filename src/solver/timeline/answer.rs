@@ -183,9 +183,10 @@ impl Timeline {
             return;
         }
         flight.changed = true;
-        if flight.strikes == 0 {
+        if !flight.aside {
             self.struck.push(place);
         }
+        flight.aside = true;
         flight.strikes = flight.strikes.saturating_add(1);
         let bound = |speed: &i64| speed.unsigned_abs() >= LIMIT.unsigned_abs();
         if self.speeds[at].iter().any(bound) {
