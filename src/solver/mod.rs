@@ -190,7 +190,7 @@ impl Solver {
             }
             for substep in 1..=scales.substeps {
                 movers.begin(substep == 1);
-                for &pair in turning.iter().filter(|_| substep > 1) {
+                for &pair in &*turning {
                     let anew = Turning { bodies, colliders, mobilities, scales, before };
                     let pair = &mut touch.pairs[pair as usize];
                     let seat = colors.seats[pair.row as usize] as usize;

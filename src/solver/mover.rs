@@ -216,9 +216,14 @@ impl Movers {
         }
     }
 
-    /// Where it is before it is given the way of a substep; at rest.
-    pub(crate) fn now(&self, place: u32, begin: &State, mobility: &Mobility, scales: &Scales) -> State {
-        Self::gone(self.courses[place as usize].sum, begin, mobility, scales)
+    /// Where it is in the middle of the substep that has begun, as it goes now: as rows see it, and from where the tick
+    /// began.
+    pub(crate) fn half_on(&self, place: u32, begin: &State, mobility: &Mobility, scales: &Scales) -> (Mover, State) {
+        let (mut mover, course) = (self.lanes[place as usize], &self.courses[place as usize]);
+        let half = [mover.v[0], mover.v[1], mover.w].map(lane::round::<29>);
+        let gone = [0, 1, 2].map(|axis: usize| lane::add(course.sum[axis], half[axis]));
+        mover.go(&gone, scales);
+        (mover, Self::gone(gone, begin, mobility, scales))
     }
 
     /// Where a way over h brings a body from where the tick began.

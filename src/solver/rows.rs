@@ -105,17 +105,24 @@ impl Block {
         Contact { normal, tangent: self.friction.carried(i), ..Contact::default() }
     }
 
-    /// Has `write` write a contact anew between sweeps, from where its bodies are now. Its impulses are taken back along
+    /// Has `write` write a contact anew between sweeps, by where its bodies are as `seen`. Its impulses are taken back along
     /// the old directions, and those that go on are given along the new ones: warm starting repeats what the rows hold.
-    pub(crate) fn renew(&mut self, i: usize, movers: &mut [Mover], write: impl FnOnce(&mut Block)) {
+    pub(crate) fn renew(
+        &mut self,
+        i: usize,
+        movers: &mut [Mover],
+        [a, b]: [&Mover; 2],
+        write: impl FnOnce(&mut Block),
+    ) {
         let given = |block: &Block| [&block.friction, &block.points[0], &block.points[1]].map(|row| row.impulse[i]);
         let peak = [self.peak[0][i], self.peak[1][i]];
         self.give(i, movers, given(self).map(i32::saturating_neg));
         write(self);
         self.give(i, movers, given(self));
-        for at in 0..2 {
-            self.peak[at][i] = self.peak[at][i].max(peak[at]);
-            let moved = self.moved(i, at, movers);
+        for (at, peak) in peak.into_iter().enumerate() {
+            self.peak[at][i] = self.peak[at][i].max(peak);
+            // As if it had been there when the tick began.
+            let moved = self.moved(i, at, a, b);
             self.separation[at][i] = lane::limit(sub(self.separation[at][i].into(), moved));
         }
     }
@@ -180,7 +187,7 @@ impl Block {
         let load = [0, 1].map(|at| self.points[at].impulse[i]);
 
         let separation = [0, 1].map(|at| {
-            let moved = self.moved(i, at, movers);
+            let moved = self.moved(i, at, a, b);
             lane::limit(add(self.separation[at][i].into(), moved))
         });
 
@@ -215,8 +222,7 @@ impl Block {
 
     /// How much farther apart a point is than when the tick began, by its direction and arms: Q26.
     #[inline(always)]
-    fn moved(&self, i: usize, at: usize, movers: &[Mover]) -> i64 {
-        let [a, b] = [0, 1].map(|body: usize| &movers[self.bodies[body][i] as usize]);
+    fn moved(&self, i: usize, at: usize, a: &Mover, b: &Mover) -> i64 {
         let d = [0, 1].map(|axis| sub(a.d[axis].into(), b.d[axis].into()));
         let apart = add(lane::times(self.normal[0][i], d[0]), lane::times(self.normal[1][i], d[1]));
         let arm = &self.points[at].arm;

@@ -3,9 +3,9 @@
 
 use super::flight::State;
 use super::mobility::Mobility;
-use super::mover::Movers;
+use super::mover::{Mover, Movers};
 use super::prepare::Joint;
-use super::rows::{Block, LANES};
+use super::rows::Block;
 use super::scales::Scales;
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Contact, Pair};
@@ -50,35 +50,37 @@ pub(super) struct Turning<'s> {
 }
 
 impl Turning<'_> {
-    /// Makes the rows of a pair anew, in a substep that has begun. Impulses of points that are still there go on, along
-    /// the direction that the contact has now.
+    /// Makes the rows of a pair anew, in a substep that has begun, by where its middle finds them as they go now: a
+    /// direction of the beginning would let a wall of 300 m/s² in by 4 mm a tick. Impulses of points that are still there
+    /// go on, along the direction that the contact has then.
     pub(super) fn renew(&self, pair: &mut Pair, places: [u32; 2], block: &mut Block, i: usize, movers: &mut Movers) {
         if block.is_retired(i) {
             return;
         }
-        let old = Contact { count: pair.manifold.count, ids: pair.manifold.points.map(|point| point.id), ..block.carried(i) };
-        let states = [0, 1].map(|body: usize| self.state(pair.bodies[body], places[body], movers));
-        let placed = [0, 1].map(|body: usize| {
+        let ids = pair.manifold.points.map(|point| point.id);
+        let old = Contact { count: pair.manifold.count, ids, ..block.carried(i) };
+        let [(a, at_a), (b, at_b)] = [0, 1].map(|body: usize| self.half_on(pair.bodies[body], places[body], movers));
+        let placed = |body: usize, state: &State| {
             let outline = self.colliders.outline(pair.colliders[body] as usize);
-            Placed::new(outline, Rot::new(Angle::from_bits(states[body].angle)))
-        });
-        let between = [0, 1].map(|axis: usize| states[1].x[axis].saturating_sub(states[0].x[axis]));
+            Placed::new(outline, Rot::new(Angle::from_bits(state.angle)))
+        };
+        let between = [0, 1].map(|axis: usize| at_b.x[axis].saturating_sub(at_a.x[axis]));
         pair.met |= block.spent(i);
-        pair.manifold = collide(&placed[0], &placed[1], between, self.scales.margins.base);
+        pair.manifold = collide(&placed(0, &at_a), &placed(1, &at_b), between, self.scales.margins.base);
         let joint = Joint::new(pair, places, between, pair.bodies.map(|slot| &self.mobilities[slot as usize]));
-        block.renew(i, &mut movers.lanes, |block| joint.write(block, i, &old, pair.friction, self.scales));
+        block.renew(i, &mut movers.lanes, [&a, &b], |block| joint.write(block, i, &old, pair.friction, self.scales));
     }
 
-    /// Where a body is now.
-    fn state(&self, slot: u32, place: u32, movers: &Movers) -> State {
+    /// A body in the middle of the substep.
+    fn half_on(&self, slot: u32, place: u32, movers: &Movers) -> (Mover, State) {
+        let at = slot as usize;
         if place == 0 {
-            let at = slot as usize;
-            let position = self.bodies.position(at);
-            let x = [position.x.to_bits(), position.y.to_bits()];
-            return State { x, angle: self.bodies.angle.get(at).to_bits(), ..State::default() };
+            let x = [self.bodies.x.bits()[at], self.bodies.y.bits()[at]];
+            let angle = self.bodies.angle.get(at).to_bits();
+            return (Mover::default(), State { x, angle, ..State::default() });
         }
         let [x, y, angle, ..] = self.before[place as usize];
         let begin = State { x: [x, y], angle, ..State::default() };
-        movers.now(place, &begin, &self.mobilities[slot as usize], self.scales)
+        movers.half_on(place, &begin, &self.mobilities[at], self.scales)
     }
 }
