@@ -8,7 +8,7 @@ use super::{Engaged, FLAT, LATE, LATER, LEAP, MANY, MOST, NEVER, OFTEN, REACH, S
 use crate::contact::{Collision, Pace};
 use crate::geom::{Rot, Vec2};
 use crate::motion::{Bound, Fault};
-use crate::narrow::{Manifold, collide};
+use crate::narrow::{Manifold, Point, collide};
 use crate::num::{Angle, AngularVelocity, Velocity, add_sat, clamp_i64, lane::next, mul, round_shift};
 use crate::shape::Placed;
 
@@ -135,7 +135,17 @@ impl Timeline {
         let (manifold, between) = touching(pair, a, b, stage)?;
         let mobility = [a, b].map(|flight| &stage.mobilities[flight.slot as usize]);
         let joined = pair.answers >= OFTEN && (pair.restitution < ONE || self.overspent() > 0);
-        Some(Strike::new(bodies, &manifold, between, mobility, pair.friction, joined))
+        let of = |manifold: &Manifold| Strike::new(bodies, manifold, between, mobility, pair.friction, joined);
+        let [p, q] = manifold.points;
+        if manifold.count < 2 || p.separation.abs_diff(q.separation) <= FLAT.unsigned_abs() {
+            return Some(of(&manifold));
+        }
+        // Of two points that are not level the lower: but where both overlap already, it may part while the other closes.
+        let [low, high] = if p.separation < q.separation { [p, q] } else { [q, p] };
+        let alone = |point: Point| of(&Manifold { count: 1, points: [point, Point::default()], ..manifold.clone() });
+        let strike = alone(low);
+        let other = high.separation <= 0 && strike.approach(&self.speeds) >= 0;
+        Some(if other { alone(high) } else { strike })
     }
 
     /// The place of a body among those of the answer, to whose time it is brought.
@@ -297,7 +307,7 @@ fn pace(state: &State) -> Pace {
     Pace { velocity: Vec2::new(x, y), angular_velocity: AngularVelocity::from_bits(state.omega) }
 }
 
-/// Where a pair touches: its manifold, and the way from a's centre to b's. Of two points that are not level, the lower.
+/// Where a pair touches: its manifold, and the way from a's centre to b's.
 fn touching(pair: &Engaged, a: &Flight, b: &Flight, stage: &Stage<'_>) -> Option<(Manifold, [i64; 2])> {
     let outlines = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
     let placed = [(outlines[0], a), (outlines[1], b)]
@@ -305,14 +315,7 @@ fn touching(pair: &Engaged, a: &Flight, b: &Flight, stage: &Stage<'_>) -> Option
     let between = [0, 1].map(|axis: usize| b.state.x[axis].saturating_sub(a.state.x[axis]));
     let size = (outlines[0].reach.max(outlines[1].reach) >> 34).saturating_add(1);
     let reach = REACH.saturating_mul(size);
-    let mut manifold = collide(&placed[0], &placed[1], between, reach.saturating_add(FLAT));
-    if manifold.count == 2 {
-        let [p, q] = manifold.points;
-        if p.separation.abs_diff(q.separation) > FLAT.unsigned_abs() {
-            manifold.points[0] = if p.separation < q.separation { p } else { q };
-            manifold.count = 1;
-        }
-    }
+    let manifold = collide(&placed[0], &placed[1], between, reach.saturating_add(FLAT));
     let near = manifold.points[..manifold.count as usize].iter().any(|point| point.separation <= reach);
     near.then_some((manifold, between))
 }
