@@ -96,7 +96,8 @@ impl Flight {
     /// The box in which a body of this reach is at a time.
     pub(crate) fn box_at(&self, time: i64, reach: i64, scales: &Scales) -> Aabb {
         let x = self.at(time, scales).x;
-        let out = |by: i64| Vec2::new(Length::from_bits(x[0].saturating_add(by)), Length::from_bits(x[1].saturating_add(by)));
+        let out =
+            |by: i64| Vec2::new(Length::from_bits(x[0].saturating_add(by)), Length::from_bits(x[1].saturating_add(by)));
         Aabb { min: out(reach.saturating_neg()), max: out(reach) }
     }
 }

@@ -176,7 +176,9 @@ impl Solver {
         drive: &Drive,
         faults: &mut Vec<Fault>,
     ) {
-        let Solver { mobilities, scales, movers, before, places, fast, turning, timeline, colors, blocks, kernel, .. } = self;
+        let Solver {
+            mobilities, scales, movers, before, places, fast, turning, timeline, colors, blocks, kernel, ..
+        } = self;
         let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[] };
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
@@ -200,7 +202,12 @@ impl Solver {
                     kernel.solve::<true>(block, u8::MAX, &mut movers.lanes, scales);
                 }
                 movers.drift(scales);
-                timeline.run(scales.span(substep), &Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks }, movers, faults);
+                timeline.run(
+                    scales.span(substep),
+                    &Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks },
+                    movers,
+                    faults,
+                );
                 for pair in timeline.retired.drain(..) {
                     let seat = colors.seats[touch.pairs[pair as usize].row as usize] as usize;
                     blocks[seat / LANES].retire(seat % LANES);

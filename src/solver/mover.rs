@@ -162,7 +162,8 @@ impl Movers {
             course.pushed |= !(free(0) && free(1) && free(2));
             let over = |axis: usize| now[axis].unsigned_abs() > limits[axis].unsigned_abs();
             if brisk {
-                let off = |axis: usize| lane::sub(now[axis], course.start[axis]).unsigned_abs() > scales.aside.unsigned_abs();
+                let off =
+                    |axis: usize| lane::sub(now[axis], course.start[axis]).unsigned_abs() > scales.aside.unsigned_abs();
                 course.aside = off(0) || off(1);
             }
             course.cut = [0; 3];

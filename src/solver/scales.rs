@@ -1,7 +1,7 @@
 //! The constants of a world's contact solver.
 
 use crate::contact::Margins;
-use crate::num::{TURN_PER_RADIAN_Q64, Time, div, mul, round_shift};
+use crate::num::{TURN_PER_RADIAN_Q64, Time, clamp_i64, div, mul, round_shift};
 
 /// Softness: a contact is a spring and damper of this frequency, as a part of the substep rate, and of this damping
 /// ratio; then nothing depends on the rate. Of it follow, with x = 2π·c and a = 2ζ + x:
@@ -131,18 +131,17 @@ impl Scales {
     }
 
     /// The least speed of approach at which what was taken from the rows is answered as an impact, Q48 m/s; `borne`: rows
-    /// bear a load there, and take what is slower.
-    pub(crate) fn least_strike(&self, restitution: i64, borne: bool) -> i64 {
+    /// bear a load there, and take what is slower, and goes in a substep less than an eighth of what reaches so far, Q32 m.
+    pub(crate) fn least_strike(&self, restitution: i64, borne: bool, reach: i64) -> i64 {
         if restitution >= SPEED {
             return SPEED / 1_000_000;
         }
-        let least = match (borne, restitution > 0) {
-            (true, false) => SPEED * 8,
-            (true, true) => SPEED * 2,
-            (false, false) => SPEED / 2,
-            (false, true) => SPEED / 100,
-        };
-        least << self.shift
+        let plain = if restitution > 0 { SPEED / 100 } else { SPEED / 2 } << self.shift;
+        if !borne {
+            return plain;
+        }
+        let most = if restitution > 0 { SPEED * 2 } else { SPEED * 8 } << self.shift;
+        most.min(clamp_i64(i128::from(reach).saturating_mul(self.rate.into()) << 13)).max(plain)
     }
 
     /// The speed beyond which a near pair parts, Q48 m/s: slower ones may be at rest, unless they bounce off everything.

@@ -106,6 +106,12 @@ impl Stage<'_> {
         manifold.is_some_and(|m| m.points[..m.count as usize].iter().all(|p| p.separation > self.scales.touching))
     }
 
+    /// How far the smaller of two colliders reaches.
+    fn smaller(&self, colliders: [u32; 2]) -> i64 {
+        let [a, b] = colliders.map(|slot| self.colliders.outline(slot as usize).reach);
+        a.min(b)
+    }
+
     /// Whether the rows of a pair bear a load now.
     fn bears(&self, pair: u32) -> bool {
         let row = self.touch.pairs.get(pair as usize).map_or(NONE, |pair| pair.row);
@@ -196,7 +202,7 @@ impl Timeline {
         if free {
             self.retired.push(pair);
         }
-        let least = stage.scales.least_strike(restitution, held && stage.bears(pair));
+        let least = stage.scales.least_strike(restitution, held && stage.bears(pair), stage.smaller(colliders));
         let depth = stage.touch.pairs.get(pair as usize).map_or(0, |pair| pair.depth);
         self.engaged.push(Engaged {
             colliders,
@@ -229,7 +235,11 @@ impl Timeline {
         }
         // What is passed on often, rows take: but for what is too fast for them.
         let passed = pair.held && strikes >= PASSED_ON && pair.restitution < ONE;
-        let least = if passed { pair.least.max(scales.least_strike(0, true)) } else { pair.least };
+        let least = if passed {
+            pair.least.max(scales.least_strike(0, true, stage.smaller(pair.colliders)))
+        } else {
+            pair.least
+        };
         let from = from.max(a.time).max(b.time);
         let until = if a.pushed || b.pushed { end } else { TICK };
         if from > until {

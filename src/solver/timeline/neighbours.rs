@@ -55,7 +55,8 @@ impl Timeline {
     /// Whether bodies with rows are so slow that these take whatever comes together.
     fn is_slow(&self, bodies: [u32; 2], pair: u32, stage: &Stage<'_>) -> bool {
         let restitution = stage.touch.pairs[pair as usize].restitution;
-        self.fastest(bodies, stage) < stage.scales.least_strike(restitution, stage.bears(pair))
+        let smaller = stage.smaller(stage.touch.pairs[pair as usize].colliders);
+        self.fastest(bodies, stage) < stage.scales.least_strike(restitution, stage.bears(pair), smaller)
     }
 
     /// A bound of the speed of points of two bodies against each other, Q48 m/s.
