@@ -11,7 +11,7 @@ mod answer;
 mod astray;
 mod neighbours;
 
-use super::flight::{Flights, NONE, Past, State, TICK, motion};
+use super::flight::{Flight, Flights, NONE, Past, State, TICK, motion};
 use super::mobility::Mobility;
 use super::mover::Movers;
 use super::rows::{Block, LANES};
@@ -229,10 +229,12 @@ impl Timeline {
         let pair = &mut self.engaged[at];
         pair.time = NEVER;
         let [a, b] = pair.flights.map(|place| &self.flights.list[place as usize]);
-        let strikes = a.strikes.max(b.strikes);
-        if strikes >= MOST {
+        // Who was struck too often stays, but others do not pass through it.
+        let stays = |flight: &Flight| flight.strikes >= MOST || !stage.mobilities[flight.slot as usize].moves();
+        if stays(a) && stays(b) {
             return;
         }
+        let strikes = a.strikes.max(b.strikes);
         // What is passed on often, rows take: but for what is too fast for them.
         let passed = pair.held && strikes >= PASSED_ON && pair.restitution < ONE;
         let least = if passed {

@@ -87,7 +87,7 @@ impl Timeline {
                 // It rests, and is a row's in the next tick: until then it is not answered over and over.
                 pair.least = pair.least.max(stage.scales.least_settled());
             }
-            pair.answers = pair.answers.saturating_add(1);
+            (pair.answers, pair.misses) = (pair.answers.saturating_add(1), 0);
             self.restitutions.push(if bounces { pair.restitution } else { 0 });
             self.strikes.push(strike);
             self.members.push(at);
@@ -128,13 +128,16 @@ impl Timeline {
 
     /// The contact of a pair at a time, if it touches; its bodies are taken in.
     fn contact(&mut self, at: u32, time: i64, stage: &Stage<'_>) -> Option<Strike> {
-        let pair = &self.engaged[at as usize];
-        let bodies = pair.flights.map(|place| self.local(place, time, stage));
-        let pair = &self.engaged[at as usize];
-        let [a, b] = pair.flights.map(|place| &self.flights.list[place as usize]);
+        let (places, spent) = (self.engaged[at as usize].flights, self.overspent() > 0);
+        let bodies = places.map(|place| self.local(place, time, stage));
+        let pair = &mut self.engaged[at as usize];
+        let [a, b] = places.map(|place| &self.flights.list[place as usize]);
         let (manifold, between) = touching(pair, a, b, stage)?;
+        // What closes hundreds of times in a tick gets deeper by half of what touching is each time.
+        let overlap = |point: &Point| point.separation.saturating_neg();
+        pair.depth = manifold.points.iter().map(overlap).fold(pair.depth, i64::max);
         let mobility = [a, b].map(|flight| &stage.mobilities[flight.slot as usize]);
-        let joined = pair.answers >= OFTEN && (pair.restitution < ONE || self.overspent() > 0);
+        let joined = pair.answers >= OFTEN && (pair.restitution < ONE || spent);
         let of = |manifold: &Manifold| Strike::new(bodies, manifold, between, mobility, pair.friction, joined);
         let [p, q] = manifold.points;
         if manifold.count < 2 || p.separation.abs_diff(q.separation) <= FLAT.unsigned_abs() {
@@ -144,7 +147,7 @@ impl Timeline {
         let [low, high] = if p.separation < q.separation { [p, q] } else { [q, p] };
         let alone = |point: Point| of(&Manifold { count: 1, points: [point, Point::default()], ..manifold.clone() });
         let strike = alone(low);
-        let other = high.separation <= 0 && strike.approach(&self.speeds) >= 0;
+        let other = high.separation <= 0 && strike.approach(&self.speeds).saturating_neg() <= pair.least / 2;
         Some(if other { alone(high) } else { strike })
     }
 
