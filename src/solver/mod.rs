@@ -156,7 +156,7 @@ impl Solver {
             let [a, b] = pair.bodies.map(|slot| slot as usize);
             let between = |c: &[i64]| c[b].saturating_sub(c[a]);
             let between = [between(bodies.x.bits()), between(bodies.y.bits())];
-            let joint = Joint::new(pair, places[row], between, [&mobilities[a], &mobilities[b]]);
+            let joint = Joint::new(pair, places[row], [between; 2], [&mobilities[a], &mobilities[b]]);
             let old = if pair.old == NEW { Contact::default() } else { contacts.get(pair.old as usize) };
             let seat = colors.seats[row] as usize;
             let block = &mut blocks[seat / LANES];

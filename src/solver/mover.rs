@@ -206,33 +206,30 @@ impl Movers {
     /// `begin`: where the tick began.
     pub(crate) fn state(&self, place: u32, begin: &State, mobility: &Mobility, scales: &Scales) -> State {
         let (mover, course) = (&self.lanes[place as usize], &self.courses[place as usize]);
-        let k = scales.shift;
         let read = [mover.v[0], mover.v[1], mover.w].map(lane::round::<28>);
         let gone = [0, 1, 2].map(|axis: usize| lane::sub(course.sum[axis], read[axis]));
-        let speed = |axis: usize| clamp_i64(i128::from(read[axis]) << 28u32.saturating_add(k));
-        State {
-            v: [speed(0), speed(1)],
-            omega: mobility.over_sigma(read[2], 20u32.saturating_sub(k), 48),
-            ..Self::gone(gone, begin, mobility, scales)
-        }
+        Self::gone(gone, read, begin, mobility, scales)
     }
 
-    /// Where it is in the middle of the substep that has begun, as it goes now: as rows see it, and from where the tick
-    /// began.
-    pub(crate) fn half_on(&self, place: u32, begin: &State, mobility: &Mobility, scales: &Scales) -> (Mover, State) {
-        let (mut mover, course) = (self.lanes[place as usize], &self.courses[place as usize]);
-        let half = [mover.v[0], mover.v[1], mover.w].map(lane::round::<29>);
-        let gone = [0, 1, 2].map(|axis: usize| lane::add(course.sum[axis], half[axis]));
-        mover.go(&gone, scales);
-        (mover, Self::gone(gone, begin, mobility, scales))
+    /// Where it is before it is given the way of the substep that has begun, and with which velocities it will go.
+    pub(crate) fn now(&self, place: u32, begin: &State, mobility: &Mobility, scales: &Scales) -> State {
+        let (mover, course) = (&self.lanes[place as usize], &self.courses[place as usize]);
+        let read = [mover.v[0], mover.v[1], mover.w].map(lane::round::<28>);
+        Self::gone(course.sum, read, begin, mobility, scales)
     }
 
-    /// Where a way over h brings a body from where the tick began.
-    fn gone(gone: [i64; 3], begin: &State, mobility: &Mobility, scales: &Scales) -> State {
+    /// Where a way over h, Q20, brings a body from where the tick began, with velocities as rows read them.
+    fn gone(gone: [i64; 3], read: [i64; 3], begin: &State, mobility: &Mobility, scales: &Scales) -> State {
         let k = scales.shift;
         let at = |axis: usize| begin.x[axis].saturating_add(mul(gone[axis], scales.line, 51u32.saturating_sub(k)));
         let turned = mobility.over_sigma(mul(gone[2], scales.turn, 33), 50u32.saturating_sub(k), 48);
-        State { x: [at(0), at(1)], angle: turn_by(begin.angle, turned).0, ..State::default() }
+        let speed = |axis: usize| clamp_i64(i128::from(read[axis]) << 28u32.saturating_add(k));
+        State {
+            x: [at(0), at(1)],
+            angle: turn_by(begin.angle, turned).0,
+            v: [speed(0), speed(1)],
+            omega: mobility.over_sigma(read[2], 20u32.saturating_sub(k), 48),
+        }
     }
 
     /// An impact changed its velocities, with a part of the tick `left` (Q32) of the substep whose way it has been given.

@@ -12,8 +12,8 @@ pub(crate) struct Joint<'p> {
     pair: &'p Pair,
     /// Places among the movers.
     places: [u32; 2],
-    /// From a's centre to b's, Q32.
-    between: [i64; 2],
+    /// For each point, from a's centre to b's, Q32.
+    between: [[i64; 2]; 2],
     mobility: [&'p Mobility; 2],
     /// p and p·τ of both, Q28.
     share: [i32; 2],
@@ -31,7 +31,7 @@ struct Lever {
 }
 
 impl<'p> Joint<'p> {
-    pub(crate) fn new(pair: &'p Pair, places: [u32; 2], between: [i64; 2], mobility: [&'p Mobility; 2]) -> Self {
+    pub(crate) fn new(pair: &'p Pair, places: [u32; 2], between: [[i64; 2]; 2], mobility: [&'p Mobility; 2]) -> Self {
         const ONE: i32 = 1 << 28;
         let first = mobility[0].share(mobility[1]);
         let second = if mobility[1].moves() { ONE.saturating_sub(first) } else { 0 };
@@ -43,7 +43,7 @@ impl<'p> Joint<'p> {
 
     /// α of both bodies along the normal and along the tangent (−n_y, n_x) at a point: r × n, and r × t = r·n. Across a
     /// gap each body has the point on its own surface, where it will be when the gap has closed.
-    fn arms(&self, point: &Point) -> [[i32; 2]; 2] {
+    fn arms(&self, at: usize, point: &Point) -> [[i32; 2]; 2] {
         const LIMIT: i64 = (8 << 28) - 1;
         let half = point.separation.max(0) >> 1;
         let out = self.pair.manifold.normal.map(|n| mul(half, n.into(), 30));
@@ -55,7 +55,7 @@ impl<'p> Joint<'p> {
             }
             let r = [0, 1].map(|axis: usize| match body {
                 0 => point.arm[axis].saturating_add(out[axis]),
-                _ => point.arm[axis].saturating_sub(self.between[axis]).saturating_sub(out[axis]),
+                _ => point.arm[axis].saturating_sub(self.between[at][axis]).saturating_sub(out[axis]),
             });
             let [x, y] = self.mobility[body].relative(r);
             let along = lane::round::<28>(lane::sub(lane::mul(x, ny), lane::mul(y, nx)));
@@ -82,7 +82,7 @@ impl<'p> Joint<'p> {
         }
         let manifold = &self.pair.manifold;
         let points = &manifold.points[..manifold.count as usize];
-        let arms = [0, 1].map(|at| points.get(at).map(|point| self.arms(point)));
+        let arms = [0, 1].map(|at| points.get(at).map(|point| self.arms(at, point)));
         let lower = usize::from(points.len() > 1 && points[1].separation < points[0].separation);
         let tangent = arms[lower].map_or(Lever::default(), |[_, arm]| self.lever(arm));
         let mut carried = 0;

@@ -105,20 +105,15 @@ impl Block {
         Contact { normal, tangent: self.friction.carried(i), ..Contact::default() }
     }
 
-    /// Has `write` write a contact anew between sweeps, by where its bodies are as `seen`. Its impulses are taken back along
+    /// Has `write` write a contact anew between sweeps, by where its bodies are then. Its impulses are taken back along
     /// the old directions, and those that go on are given along the new ones: warm starting repeats what the rows hold.
-    pub(crate) fn renew(
-        &mut self,
-        i: usize,
-        movers: &mut [Mover],
-        [a, b]: [&Mover; 2],
-        write: impl FnOnce(&mut Block),
-    ) {
+    pub(crate) fn renew(&mut self, i: usize, movers: &mut [Mover], write: impl FnOnce(&mut Block)) {
         let given = |block: &Block| [&block.friction, &block.points[0], &block.points[1]].map(|row| row.impulse[i]);
         let peak = [self.peak[0][i], self.peak[1][i]];
         self.give(i, movers, given(self).map(i32::saturating_neg));
         write(self);
         self.give(i, movers, given(self));
+        let [a, b] = [0, 1].map(|body: usize| &movers[self.bodies[body][i] as usize]);
         for (at, peak) in peak.into_iter().enumerate() {
             self.peak[at][i] = self.peak[at][i].max(peak);
             // As if it had been there when the tick began.

@@ -3,15 +3,15 @@
 
 use super::flight::State;
 use super::mobility::Mobility;
-use super::mover::{Mover, Movers};
+use super::mover::Movers;
 use super::prepare::Joint;
 use super::rows::Block;
 use super::scales::Scales;
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Contact, Pair};
-use crate::geom::Rot;
-use crate::narrow::collide;
-use crate::num::{Angle, mul};
+use crate::geom::{Rot, Vec2};
+use crate::narrow::{Manifold, collide};
+use crate::num::{Angle, Length, cross, dot, mul};
 use crate::shape::Placed;
 
 /// What turning may move a contact by beside its row until it is made anew: 1 mm in a tick, Q32 m.
@@ -50,37 +50,100 @@ pub(super) struct Turning<'s> {
 }
 
 impl Turning<'_> {
-    /// Makes the rows of a pair anew, in a substep that has begun, by where its middle finds them as they go now: a
-    /// direction of the beginning would let a wall of 300 m/s² in by 4 mm a tick. Impulses of points that are still there
-    /// go on, along the direction that the contact has then.
+    /// Makes the rows of a pair anew, in a substep that has begun. Impulses of points that are still there go on, along the
+    /// direction that the contact has now.
     pub(super) fn renew(&self, pair: &mut Pair, places: [u32; 2], block: &mut Block, i: usize, movers: &mut Movers) {
         if block.is_retired(i) {
             return;
         }
         let ids = pair.manifold.points.map(|point| point.id);
         let old = Contact { count: pair.manifold.count, ids, ..block.carried(i) };
-        let [(a, at_a), (b, at_b)] = [0, 1].map(|body: usize| self.half_on(pair.bodies[body], places[body], movers));
-        let placed = |body: usize, state: &State| {
+        let states = [0, 1].map(|body: usize| self.state(pair.bodies[body], places[body], movers));
+        let [a, b] = [0, 1].map(|body: usize| {
             let outline = self.colliders.outline(pair.colliders[body] as usize);
-            Placed::new(outline, Rot::new(Angle::from_bits(state.angle)))
-        };
-        let between = [0, 1].map(|axis: usize| at_b.x[axis].saturating_sub(at_a.x[axis]));
+            Placed::new(outline, Rot::new(Angle::from_bits(states[body].angle)))
+        });
+        let between = [0, 1].map(|axis: usize| states[1].x[axis].saturating_sub(states[0].x[axis]));
         pair.met |= block.spent(i);
-        pair.manifold = collide(&placed(0, &at_a), &placed(1, &at_b), between, self.scales.margins.base);
-        let joint = Joint::new(pair, places, between, pair.bodies.map(|slot| &self.mobilities[slot as usize]));
-        block.renew(i, &mut movers.lanes, [&a, &b], |block| joint.write(block, i, &old, pair.friction, self.scales));
+        pair.manifold = collide(&a, &b, between, self.reach(pair, &states));
+        let betweens = self.half_on(&mut pair.manifold, [&a, &b], &states, between);
+        let joint = Joint::new(pair, places, betweens, pair.bodies.map(|slot| &self.mobilities[slot as usize]));
+        block.renew(i, &mut movers.lanes, |block| joint.write(block, i, &old, pair.friction, self.scales));
     }
 
-    /// A body in the middle of the substep.
-    fn half_on(&self, slot: u32, place: u32, movers: &Movers) -> (Mover, State) {
+    /// What may be met in the substep.
+    fn reach(&self, pair: &Pair, [a, b]: &[State; 2]) -> i64 {
+        let rim = |body: usize, state: &State| {
+            mul(state.omega.saturating_abs(), self.mobilities[pair.bodies[body] as usize].reach, 32)
+        };
+        let line = |axis: usize| a.v[axis].saturating_sub(b.v[axis]).saturating_abs();
+        let speed = line(0).saturating_add(line(1)).saturating_add(rim(0, a)).saturating_add(rim(1, b));
+        self.scales.margins.base.saturating_add(mul(speed, self.scales.line, 79))
+    }
+
+    /// Turns a contact on to the middle of the substep: rows are straight, and with the direction of its beginning a wall
+    /// that goes round with 300 m/s² would come in by 4 mm a tick. The direction turns with the edge's body, along whose
+    /// edge the other's point slides. For each point, from a's centre to b's as its arms have it.
+    fn half_on(
+        &self,
+        manifold: &mut Manifold,
+        placed: [&Placed; 2],
+        states: &[State; 2],
+        between: [i64; 2],
+    ) -> [[i64; 2]; 2] {
+        let sides = [manifold.normal.map(i32::saturating_neg), manifold.normal];
+        let owns = |body: usize| placed[body].normals[..placed[body].count.into()].contains(&sides[body]);
+        // Beside a corner the direction turns away from it, which is left out. A circle has no normals.
+        let edge = [1, 0].into_iter().find(|&body| placed[body].count > 1 && owns(body));
+        let turned = |body: usize, v: [i64; 2]| {
+            let half = mul(states[body].omega, self.scales.turn, 64);
+            let Vec2 { x, y } =
+                Rot::new(Angle::from_bits(half)).rotate(Vec2::new(Length::from_bits(v[0]), Length::from_bits(v[1])));
+            [x.to_bits(), y.to_bits()]
+        };
+        let n = manifold.normal.map(i64::from);
+        let t = [n[1].saturating_neg(), n[0]];
+        let then = edge.map_or(n, |edge| turned(edge, n));
+        manifold.normal = then.map(|c| c as i32);
+        let mut betweens = [between; 2];
+        for (point, between) in manifold.points[..manifold.count.into()].iter_mut().zip(&mut betweens) {
+            let arms = [point.arm, [0, 1].map(|axis: usize| point.arm[axis].saturating_sub(between[axis]))];
+            let arm = |body: usize| {
+                if edge == Some(body) {
+                    return self.slid(body, arms, states, t);
+                }
+                // Of a circle its centre goes round.
+                let radius = if body == 0 { placed[body].radius } else { placed[body].radius.saturating_neg() };
+                let center = [0, 1].map(|axis: usize| arms[body][axis].saturating_add(mul(radius, n[axis], 30)));
+                let center = turned(body, center);
+                [0, 1].map(|axis: usize| center[axis].saturating_sub(mul(radius, then[axis], 30)))
+            };
+            let arms = [arm(0), arm(1)];
+            point.arm = arms[0];
+            *between = [0, 1].map(|axis: usize| arms[0][axis].saturating_sub(arms[1][axis]));
+        }
+        betweens
+    }
+
+    /// The arm of an edge's body to a point that slides along the edge for half of the substep.
+    fn slid(&self, edge: usize, arms: [[i64; 2]; 2], states: &[State; 2], t: [i64; 2]) -> [i64; 2] {
+        let (own, other) = (&states[edge], &states[1 ^ edge]);
+        let slide = dot(other.v, t, 30)
+            .saturating_add(mul(other.omega, cross(arms[1 ^ edge], t, 30), 32))
+            .saturating_sub(dot(own.v, t, 30));
+        let way = mul(slide, self.scales.line, 80);
+        [0, 1].map(|axis: usize| arms[edge][axis].saturating_add(mul(way, t[axis], 30)))
+    }
+
+    /// Where a body is now, and how it moves.
+    fn state(&self, slot: u32, place: u32, movers: &Movers) -> State {
         let at = slot as usize;
         if place == 0 {
             let x = [self.bodies.x.bits()[at], self.bodies.y.bits()[at]];
-            let angle = self.bodies.angle.get(at).to_bits();
-            return (Mover::default(), State { x, angle, ..State::default() });
+            return State { x, angle: self.bodies.angle.get(at).to_bits(), ..State::default() };
         }
         let [x, y, angle, ..] = self.before[place as usize];
         let begin = State { x: [x, y], angle, ..State::default() };
-        movers.half_on(place, &begin, &self.mobilities[at], self.scales)
+        movers.now(place, &begin, &self.mobilities[at], self.scales)
     }
 }
