@@ -133,13 +133,14 @@ impl Solver {
             pair.depth = deepest.unwrap_or(0).max(0).saturating_add(ROUNDING);
             pair.manifold.count = 0;
         }
-        for (at, pair) in touch.pairs.iter_mut().enumerate().filter(|(_, pair)| pair.manifold.count > 0) {
+        for pair in touch.pairs.iter_mut().filter(|pair| pair.manifold.count > 0) {
             pair.row = places.len() as u32;
-            if turns(pair, bodies, mobilities, scales) {
-                turning.push(at as u32);
-            }
             places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
             heavy.push(pair.old != NEW && Scales::is_heavy(contacts.get(pair.old as usize).normal));
+        }
+        if movers.turns {
+            let turn = |pair: &Pair| pair.row != NEW && turns(pair, bodies, mobilities, scales);
+            turning.extend(touch.pairs.iter().enumerate().filter(|(_, pair)| turn(pair)).map(|(at, _)| at as u32));
         }
         movers.look_brisk(drive, scales);
         if !fast.is_empty() || movers.brisk {

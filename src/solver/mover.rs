@@ -54,8 +54,6 @@ struct Course {
     hit: bool,
     /// Whether rows have changed its velocity: until then its way is free motion.
     pushed: bool,
-    /// Whether they turned it aside, in this substep, so far that it may come to where it was not looked for neighbours.
-    aside: bool,
     slowed: bool,
 }
 
@@ -68,6 +66,8 @@ pub(crate) struct Movers {
     places: Vec<u32>,
     /// Whether one of them is so fast that rows may send others far from where they would go.
     pub(crate) brisk: bool,
+    /// Whether one of them may turn so fast that its rows must be made anew.
+    pub(crate) turns: bool,
 }
 
 impl Movers {
@@ -81,7 +81,7 @@ impl Movers {
         self.places.resize(slots, 0);
         self.lanes.clear();
         self.courses.clear();
-        self.brisk = false;
+        (self.brisk, self.turns) = (false, false);
         self.lanes.push(Mover::default());
         self.courses.push(Course { slot: u32::MAX, ..Course::default() });
     }
@@ -101,6 +101,7 @@ impl Movers {
         let eighth = sigma.saturating_mul(scales.rate.into()).saturating_mul(EIGHTH_TURN);
         let eighth = round_shift(eighth, scales.shift.saturating_add(14));
         let spin_max = fast.min(eighth) as i64;
+        self.turns |= omega.to_bits().unsigned_abs() >= TURNS;
         let place = self.lanes.len() as u32;
         let begin = start.map(lane::bounded);
         self.lanes.push(Mover { v: [begin[0], begin[1]], w: begin[2], ..Mover::default() });
@@ -154,18 +155,12 @@ impl Movers {
     /// Positions by the velocities that rows read, after bounding these.
     pub(crate) fn drift(&mut self, scales: &Scales) {
         const LIMIT: i64 = SPEED_MAX << 48;
-        let brisk = self.brisk;
         for (mover, course) in self.lanes.iter_mut().zip(&mut self.courses).skip(1) {
             let limits = [LIMIT, LIMIT, course.spin_max];
             let now = [mover.v[0], mover.v[1], mover.w];
             let free = |axis: usize| lane::sub(now[axis], course.begin[axis]) == course.kick[axis];
             course.pushed |= !(free(0) && free(1) && free(2));
             let over = |axis: usize| now[axis].unsigned_abs() > limits[axis].unsigned_abs();
-            if brisk {
-                let off =
-                    |axis: usize| lane::sub(now[axis], course.start[axis]).unsigned_abs() > scales.aside.unsigned_abs();
-                course.aside = off(0) || off(1);
-            }
             course.cut = [0; 3];
             if over(0) || over(1) || over(2) {
                 let kept = [0, 1, 2].map(|axis| lane::clamp(now[axis], limits[axis].saturating_neg(), limits[axis]));
@@ -190,10 +185,18 @@ impl Movers {
         self.courses[place as usize].pushed
     }
 
-    /// The slots of bodies that rows turned aside in this substep.
-    pub(crate) fn turned_aside(&self) -> impl Iterator<Item = u32> + '_ {
-        let courses = if self.brisk { &self.courses[1..] } else { &[] };
-        courses.iter().filter(|course| course.pushed && course.aside).map(|course| course.slot)
+    /// Whether rows have changed its velocity since the tick began so much that it may come to where it was not looked for
+    /// neighbours.
+    pub(crate) fn is_aside(&self, place: u32, scales: &Scales) -> bool {
+        let (mover, course) = (&self.lanes[place as usize], &self.courses[place as usize]);
+        let off = |axis: usize| mover.v[axis].abs_diff(course.start[axis]) > scales.aside.unsigned_abs();
+        course.pushed && (off(0) || off(1))
+    }
+
+    /// The slots of such bodies.
+    pub(crate) fn turned_aside<'s>(&'s self, scales: &'s Scales) -> impl Iterator<Item = u32> + 's {
+        let places = if self.brisk { 1..self.courses.len() } else { 0..0 };
+        places.filter(|&place| self.is_aside(place as u32, scales)).map(|place| self.courses[place].slot)
     }
 
     /// Whether [`Movers::store`] says where it ends; not for 0.
@@ -324,5 +327,7 @@ impl Movers {
     }
 }
 
+/// Slower than this nothing turns fast: 1/16 rad/s, Q48.
+pub(super) const TURNS: u64 = 1 << 44;
 /// π/4 with 30 fraction bits.
 const EIGHTH_TURN: i128 = 843_314_857;

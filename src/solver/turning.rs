@@ -3,7 +3,7 @@
 
 use super::flight::State;
 use super::mobility::Mobility;
-use super::mover::Movers;
+use super::mover::{Movers, TURNS};
 use super::prepare::Joint;
 use super::rows::Block;
 use super::scales::Scales;
@@ -14,17 +14,16 @@ use crate::narrow::{Manifold, collide};
 use crate::num::{Angle, Length, cross, dot, mul};
 use crate::shape::Placed;
 
-/// What turning may move a contact by beside its row until it is made anew: 1 mm in a tick, Q32 m.
-const BESIDE: i64 = 4_294_967;
-/// Slower than this nothing turns fast: 1/16 rad/s, Q48.
-const SLOW: i64 = 1 << 44;
+/// By how much turning may move a contact beside its row in a tick, Q32 m: 1 mm where a body turns that no contact stops,
+/// tick after tick; 8 mm else, which what tumbles in piles stays below.
+const BESIDE: [i64; 2] = [4_294_967, 34_359_738];
 
 /// Whether a pair turns so fast that its rows would be beside its contact before the tick ends: by the turn times the way,
 /// for a direction turns while points slide along it, and rims curve.
 pub(super) fn turns(pair: &Pair, bodies: &Bodies, mobilities: &[Mobility], scales: &Scales) -> bool {
     let omega = pair.bodies.map(|slot| bodies.omega.get(slot as usize).to_bits().saturating_abs());
     let most = omega[0].saturating_add(omega[1]);
-    if most < SLOW {
+    if most.unsigned_abs() < TURNS {
         return false;
     }
     let [a, b] = pair.bodies.map(|slot| bodies.velocity(slot as usize));
@@ -36,7 +35,10 @@ pub(super) fn turns(pair: &Pair, bodies: &Bodies, mobilities: &[Mobility], scale
         .saturating_add(rim(1));
     // Q32 radians and Q32 m a tick.
     let [turn, way] = [most, speed].map(|rate| mul(rate, scales.margins.tick, 79));
-    mul(turn, way, 33) > BESIDE << scales.shift
+    let driven = [0, 1]
+        .iter()
+        .any(|&body: &usize| omega[body].unsigned_abs() >= TURNS && !mobilities[pair.bodies[body] as usize].moves());
+    mul(turn, way, 33) > BESIDE[usize::from(!driven)] << scales.shift
 }
 
 /// What of a tick it takes to make rows anew.
@@ -52,6 +54,8 @@ pub(super) struct Turning<'s> {
 impl Turning<'_> {
     /// Makes the rows of a pair anew, in a substep that has begun. Impulses of points that are still there go on, along the
     /// direction that the contact has now.
+    #[cold]
+    #[inline(never)]
     pub(super) fn renew(&self, pair: &mut Pair, places: [u32; 2], block: &mut Block, i: usize, movers: &mut Movers) {
         if block.is_retired(i) {
             return;
