@@ -31,6 +31,7 @@ struct Lever {
 }
 
 impl<'p> Joint<'p> {
+    #[inline(always)]
     pub(crate) fn new(pair: &'p Pair, places: [u32; 2], between: [[i64; 2]; 2], mobility: [&'p Mobility; 2]) -> Self {
         const ONE: i32 = 1 << 28;
         let first = mobility[0].share(mobility[1]);
@@ -43,6 +44,7 @@ impl<'p> Joint<'p> {
 
     /// α of both bodies along the normal and along the tangent (−n_y, n_x) at a point: r × n, and r × t = r·n. Across a
     /// gap each body has the point on its own surface, where it will be when the gap has closed.
+    #[inline(always)]
     fn arms(&self, at: usize, point: &Point) -> [[i32; 2]; 2] {
         const LIMIT: i64 = (8 << 28) - 1;
         let half = point.separation.max(0) >> 1;
@@ -66,6 +68,7 @@ impl<'p> Joint<'p> {
         arms
     }
 
+    #[inline(always)]
     fn lever(&self, arm: [i32; 2]) -> Lever {
         let turn = [lane::scale(arm[0], self.inertia[0]), lane::scale(arm[1], self.inertia[1])];
         let kappa = lane::add(lane::scale(arm[0], turn[0]), lane::scale(arm[1], turn[1]));
@@ -111,6 +114,7 @@ impl<'p> Joint<'p> {
 
 impl Row {
     /// Takes a lever, and the impulse λ̂ = κ·(λ·S) that the last tick left. 1/κ.
+    #[inline(always)]
     fn put(&mut self, i: usize, lever: &Lever, start: i64) -> i32 {
         // κ is at least 2²⁸, or 0.
         let line = (1i64 << 56).saturating_add(lever.kappa >> 1).checked_div(lever.kappa).unwrap_or(0) as i32;
@@ -128,6 +132,7 @@ impl Row {
 
     /// What an impulse of this row adds by turning to the speed of a row with other arms, Q27. Limited to 11, which bodies
     /// of even density stay far below: beyond, a row learns of the rest in the next sweep, from w.
+    #[inline(always)]
     fn turns(&self, i: usize, arm: [i32; 2]) -> i32 {
         const LIMIT: i64 = 11 << 27;
         let part = |body: usize| lane::mul(self.turn[body][i], arm[body]);

@@ -22,23 +22,21 @@ const BESIDE: [i64; 2] = [4_294_967, 34_359_738];
 /// for a direction turns while points slide along it, and rims curve.
 pub(super) fn turns(pair: &Pair, bodies: &Bodies, mobilities: &[Mobility], scales: &Scales) -> bool {
     let omega = pair.bodies.map(|slot| bodies.omega.get(slot as usize).to_bits().saturating_abs());
-    let most = omega[0].saturating_add(omega[1]);
-    if most.unsigned_abs() < TURNS {
+    if omega[0].saturating_add(omega[1]).unsigned_abs() < TURNS {
         return false;
     }
+    let mobility = pair.bodies.map(|slot| &mobilities[slot as usize]);
     let [a, b] = pair.bodies.map(|slot| bodies.velocity(slot as usize));
-    let rim = |body: usize| mul(omega[body], mobilities[pair.bodies[body] as usize].reach, 32);
+    let rim = |body: usize| mul(omega[body], mobility[body].reach, 32);
     let line = |a: i64, b: i64| a.saturating_sub(b).saturating_abs();
-    let speed = line(a.x.to_bits(), b.x.to_bits())
-        .saturating_add(line(a.y.to_bits(), b.y.to_bits()))
-        .saturating_add(rim(0))
-        .saturating_add(rim(1));
-    // Q32 radians and Q32 m a tick.
-    let [turn, way] = [most, speed].map(|rate| mul(rate, scales.margins.tick, 79));
-    let driven = [0, 1]
-        .iter()
-        .any(|&body: &usize| omega[body].unsigned_abs() >= TURNS && !mobilities[pair.bodies[body] as usize].moves());
-    mul(turn, way, 33) > BESIDE[usize::from(!driven)] << scales.shift
+    let (x, y) = (line(a.x.to_bits(), b.x.to_bits()), line(a.y.to_bits(), b.y.to_bits()));
+    let speed = x.saturating_add(y).saturating_add(rim(0)).saturating_add(rim(1));
+    (0..2).any(|body| {
+        // Q32 radians and Q32 m a tick; and nothing of a body goes farther than across it.
+        let [turn, way] = [omega[body], speed].map(|rate| mul(rate, scales.margins.tick, 79));
+        let beside = mul(turn, way, 33).min(mobility[body].reach << 1);
+        beside > BESIDE[usize::from(mobility[body].moves())] << scales.shift
+    })
 }
 
 /// What of a tick it takes to make rows anew.

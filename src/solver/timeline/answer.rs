@@ -12,6 +12,8 @@ use crate::narrow::{Manifold, Point, collide};
 use crate::num::{Angle, AngularVelocity, Velocity, add_sat, clamp_i64, lane::next, mul, round_shift};
 use crate::shape::Placed;
 
+/// By how many strikes one counts against a body that stays.
+const SOON: u32 = 40;
 /// So many contacts are answered together at most, but for those that meet at one time.
 const BLOCK: usize = 64;
 
@@ -87,10 +89,17 @@ impl Timeline {
                 // It rests, and is a row's in the next tick: until then it is not answered over and over.
                 pair.least = pair.least.max(stage.scales.least_settled());
             }
+            let stays = a.strikes.max(b.strikes) >= MOST;
+            let flights = pair.flights;
             (pair.answers, pair.misses) = (pair.answers.saturating_add(1), 0);
             self.restitutions.push(if bounces { pair.restitution } else { 0 });
             self.strikes.push(strike);
             self.members.push(at);
+            // Who meets one that stays comes to that soon, or a crowd would strike it for as long as each may.
+            for place in flights.into_iter().filter(|_| stays) {
+                let strikes = &mut self.flights.list[place as usize].strikes;
+                *strikes = strikes.saturating_add(SOON);
+            }
         }
     }
 
