@@ -44,8 +44,10 @@ pub(crate) struct Flight {
     pub(crate) weight: [i64; 2],
     /// The first of the pairs in which it may be struck, or [`NONE`].
     pub(crate) first: u32,
-    /// How often it was struck in this tick, and a box around its way since then.
+    /// How often it was struck in this tick.
     pub(crate) strikes: u32,
+    /// Whether it left its free way, struck or sent astray by rows; and then a box around its way since.
+    pub(crate) aside: bool,
     pub(crate) around: Aabb,
     /// The number of the last answer after which its pairs were looked at, from 1 on.
     pub(crate) looked: u32,
@@ -64,19 +66,25 @@ impl Flight {
             return self.state;
         }
         let gained = self.gain.map(|gain| mul(gain, after, 32));
-        // The mean velocity of the way, over a tick as Q40 m, and the part of it.
-        let way = |v: i64, gained: i64| mul(mul(v.saturating_add(gained / 2), scales.margins.tick, 71), after, 40);
         let turned = mul(mul(omega.saturating_add(gained[2] / 2), scales.tick_turn, 63), after, 32);
         State {
-            x: [x[0].saturating_add(way(v[0], gained[0])), x[1].saturating_add(way(v[1], gained[1]))],
+            x: [0, 1].map(|axis: usize| x[axis].saturating_add(way(v[axis], gained[axis], after, scales))),
             angle: turn_by(angle, turned).0,
             v: [add_sat(v[0], gained[0]), add_sat(v[1], gained[1])],
             omega: add_sat(omega, gained[2]),
         }
     }
 
-    /// Notes the box around its way, for a body of this reach.
+    /// The same, its place alone.
+    pub(crate) fn place_at(&self, time: i64, scales: &Scales) -> [i64; 2] {
+        let after = time.saturating_sub(self.time);
+        let gone = |axis: usize| way(self.state.v[axis], mul(self.gain[axis], after, 32), after, scales);
+        [0, 1].map(|axis: usize| self.state.x[axis].saturating_add(gone(axis)))
+    }
+
+    /// Notes the box around its way, for a body of this reach. What rows know may yet be pushed aside a little.
     pub(crate) fn surround(&mut self, reach: i64, scales: &Scales) {
+        let reach = reach.saturating_add(if self.place != 0 { scales.astray() } else { 0 });
         let (from, to) = (&self.state, self.at(TICK, scales));
         // A parabola lies within the triangle of its ends and where its first velocity leads in half of the time.
         let half = TICK.saturating_sub(self.time) / 2;
@@ -89,6 +97,19 @@ impl Flight {
         let [(left, right), (low, high)] = [bound(0), bound(1)];
         self.around = Aabb { min: Vec2::new(left, low), max: Vec2::new(right, high) };
     }
+
+    /// The box in which a body of this reach is at a time.
+    pub(crate) fn box_at(&self, time: i64, reach: i64, scales: &Scales) -> Aabb {
+        let x = self.place_at(time, scales);
+        let out =
+            |by: i64| Vec2::new(Length::from_bits(x[0].saturating_add(by)), Length::from_bits(x[1].saturating_add(by)));
+        Aabb { min: out(reach.saturating_neg()), max: out(reach) }
+    }
+}
+
+/// How far a speed and what it gains bring a body in a part of the tick: by the mean velocity, over a tick as Q40 m.
+fn way(v: i64, gained: i64, after: i64, scales: &Scales) -> i64 {
+    mul(mul(v.saturating_add(gained / 2), scales.margins.tick, 71), after, 40)
 }
 
 /// How two bodies move against each other from a time on.

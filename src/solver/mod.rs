@@ -20,6 +20,7 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 mod timeline;
+mod turning;
 
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Contact, Contacts, NEW, Pair, Touch};
@@ -36,6 +37,7 @@ use rows::{Block, LANES};
 pub(crate) use scales::Scales;
 use scales::weight;
 use timeline::{Settled, Stage, Timeline};
+use turning::{Turning, turns};
 
 /// How many substeps pass between sweeps that take back what pushing overlaps apart added to velocities: there is one
 /// after every fifth substep and after the last; and in between for contacts with a row that pushes without bearing a load,
@@ -60,6 +62,8 @@ pub(crate) struct Solver {
     heavy: Vec<bool>,
     /// Pairs that may strike.
     fast: Vec<u32>,
+    /// Pairs that turn so fast that their rows are made anew in each substep.
+    turning: Vec<u32>,
     timeline: Timeline,
     colors: Colors,
     blocks: Vec<Block>,
@@ -91,6 +95,7 @@ impl Solver {
             places,
             heavy,
             fast,
+            turning,
             timeline,
             colors,
             blocks,
@@ -101,6 +106,7 @@ impl Solver {
         places.clear();
         heavy.clear();
         fast.clear();
+        turning.clear();
         for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !pair.sensor) {
             let swings = || swings(pair, bodies, drive, mobilities, scales);
             if pair.manifold.count == 0 || strikes(pair, bodies, drive, scales, false) || swings() {
@@ -132,7 +138,12 @@ impl Solver {
             places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
             heavy.push(pair.old != NEW && Scales::is_heavy(contacts.get(pair.old as usize).normal));
         }
-        if !fast.is_empty() {
+        if movers.turns {
+            let turn = |pair: &Pair| pair.row != NEW && turns(pair, bodies, mobilities, scales);
+            turning.extend(touch.pairs.iter().enumerate().filter(|(_, pair)| turn(pair)).map(|(at, _)| at as u32));
+        }
+        movers.look_brisk(drive, scales);
+        if !fast.is_empty() || movers.brisk {
             timeline.remember(bodies);
         }
         movers.remember(bodies, before);
@@ -146,7 +157,7 @@ impl Solver {
             let [a, b] = pair.bodies.map(|slot| slot as usize);
             let between = |c: &[i64]| c[b].saturating_sub(c[a]);
             let between = [between(bodies.x.bits()), between(bodies.y.bits())];
-            let joint = Joint::new(pair, places[row], between, [&mobilities[a], &mobilities[b]]);
+            let joint = Joint::new(pair, places[row], [between; 2], [&mobilities[a], &mobilities[b]]);
             let old = if pair.old == NEW { Contact::default() } else { contacts.get(pair.old as usize) };
             let seat = colors.seats[row] as usize;
             let block = &mut blocks[seat / LANES];
@@ -166,8 +177,21 @@ impl Solver {
         drive: &Drive,
         faults: &mut Vec<Fault>,
     ) {
-        let Solver { mobilities, scales, movers, before, free, places, fast, timeline, colors, blocks, kernel, .. } =
-            self;
+        let Solver {
+            mobilities,
+            scales,
+            movers,
+            before,
+            free,
+            places,
+            fast,
+            turning,
+            timeline,
+            colors,
+            blocks,
+            kernel,
+            ..
+        } = self;
         let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[] };
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
@@ -181,6 +205,12 @@ impl Solver {
             }
             for substep in 1..=scales.substeps {
                 movers.begin(substep == 1);
+                for &pair in &*turning {
+                    let anew = Turning { bodies, colliders, mobilities, scales, before };
+                    let pair = &mut touch.pairs[pair as usize];
+                    let seat = colors.seats[pair.row as usize] as usize;
+                    anew.renew(pair, places[pair.row as usize], &mut blocks[seat / LANES], seat % LANES, movers);
+                }
                 for block in blocks.iter_mut() {
                     kernel.solve::<true>(block, u8::MAX, &mut movers.lanes, scales);
                 }
@@ -194,14 +224,17 @@ impl Solver {
                 }
                 movers.welcome(mobilities, &timeline.past, before, free);
                 for Settled { pair, manifold, between } in timeline.settled.drain(..) {
-                    let pair = &mut touch.pairs[pair as usize];
+                    let (at, pair) = (pair, &mut touch.pairs[pair as usize]);
+                    if !turning.contains(&at) && turns(pair, bodies, mobilities, scales) {
+                        turning.push(at);
+                    }
                     (pair.manifold, pair.row) = (manifold, places.len() as u32);
                     places.push(pair.bodies.map(|slot| movers.place_of(slot)));
                     let both = places[pair.row as usize];
                     let seat = colors.late(blocks, both, free);
                     let (block, i) = (&mut blocks[seat / LANES], seat % LANES);
                     let mobility = pair.bodies.map(|slot| &mobilities[slot as usize]);
-                    Joint::new(pair, both, between, mobility).write(
+                    Joint::new(pair, both, [between; 2], mobility).write(
                         block,
                         i,
                         &Contact::default(),

@@ -5,7 +5,7 @@ use super::mobility::Mobility;
 use super::scales::{SPEED_MAX, Scales};
 use crate::body::Bodies;
 use crate::geom::Vec2;
-use crate::motion::{Bound, Fault, turn_by};
+use crate::motion::{Bound, Drive, Fault, turn_by};
 use crate::num::{Angle, AngularVelocity, Length, Quantity, Velocity, add_sat, clamp_i64, div, lane, mul, round_shift};
 use core::mem::replace;
 
@@ -64,6 +64,10 @@ pub(crate) struct Movers {
     courses: Vec<Course>,
     /// By slot of a body: its place here; 0 for none.
     places: Vec<u32>,
+    /// Whether one of them is so fast that rows may send others far from where they would go.
+    pub(crate) brisk: bool,
+    /// Whether one of them may turn so fast that its rows must be made anew.
+    pub(crate) turns: bool,
 }
 
 impl Movers {
@@ -77,6 +81,7 @@ impl Movers {
         self.places.resize(slots, 0);
         self.lanes.clear();
         self.courses.clear();
+        (self.brisk, self.turns) = (false, false);
         self.lanes.push(Mover::default());
         self.courses.push(Course { slot: u32::MAX, ..Course::default() });
     }
@@ -87,6 +92,7 @@ impl Movers {
         if self.places[at] != 0 || mobility.fixed {
             return self.places[at];
         }
+        self.turns |= bodies.omega.get(at).to_bits().unsigned_abs() >= TURNS;
         self.enter(slot, speeds(bodies, at, mobility, scales), mobility, scales)
     }
 
@@ -134,6 +140,16 @@ impl Movers {
         (course.pushed, course.hit) = (true, true);
         mover.go(&course.sum, scales);
         place
+    }
+
+    /// Before the bodies move: notes whether one of them is, or gets by forces, so fast that rows may send others aside.
+    pub(crate) fn look_brisk(&mut self, drive: &Drive, scales: &Scales) {
+        let most = scales.aside.unsigned_abs() / 2;
+        self.brisk = self.courses[1..].iter().any(|course| {
+            let gain = drive.gain(course.slot as usize, scales.margins.tick);
+            course.start.iter().any(|speed| speed.unsigned_abs() > most)
+                || gain.iter().any(|gain| gain.unsigned_abs() >> scales.shift > most)
+        });
     }
 
     /// After the bodies have moved as if nothing touched them: what forces do to them in a substep.
@@ -195,6 +211,20 @@ impl Movers {
         self.courses[place as usize].pushed
     }
 
+    /// Whether rows have changed its velocity since the tick began so much that it may come to where it was not looked for
+    /// neighbours.
+    pub(crate) fn is_aside(&self, place: u32, scales: &Scales) -> bool {
+        let (mover, course) = (&self.lanes[place as usize], &self.courses[place as usize]);
+        let off = |axis: usize| mover.v[axis].abs_diff(course.start[axis]) > scales.aside.unsigned_abs();
+        course.pushed && (off(0) || off(1))
+    }
+
+    /// The slots of such bodies.
+    pub(crate) fn turned_aside<'s>(&'s self, scales: &'s Scales) -> impl Iterator<Item = u32> + 's {
+        let places = if self.brisk { 1..self.courses.len() } else { 0..0 };
+        places.filter(|&place| self.is_aside(place as u32, scales)).map(|place| self.courses[place].slot)
+    }
+
     /// Whether [`Movers::store`] says where it ends; not for 0.
     pub(crate) fn keeps(&self, place: u32) -> bool {
         let course = &self.courses[place as usize];
@@ -205,9 +235,21 @@ impl Movers {
     /// `begin`: where the tick began.
     pub(crate) fn state(&self, place: u32, begin: &State, mobility: &Mobility, scales: &Scales) -> State {
         let (mover, course) = (&self.lanes[place as usize], &self.courses[place as usize]);
-        let k = scales.shift;
         let read = [mover.v[0], mover.v[1], mover.w].map(lane::round::<28>);
         let gone = [0, 1, 2].map(|axis: usize| lane::sub(course.sum[axis], read[axis]));
+        Self::gone(gone, read, begin, mobility, scales)
+    }
+
+    /// Where it is before it is given the way of the substep that has begun, and with which velocities it will go.
+    pub(crate) fn now(&self, place: u32, begin: &State, mobility: &Mobility, scales: &Scales) -> State {
+        let (mover, course) = (&self.lanes[place as usize], &self.courses[place as usize]);
+        let read = [mover.v[0], mover.v[1], mover.w].map(lane::round::<28>);
+        Self::gone(course.sum, read, begin, mobility, scales)
+    }
+
+    /// Where a way over h, Q20, brings a body from where the tick began, with velocities as rows read them.
+    fn gone(gone: [i64; 3], read: [i64; 3], begin: &State, mobility: &Mobility, scales: &Scales) -> State {
+        let k = scales.shift;
         let at = |axis: usize| begin.x[axis].saturating_add(mul(gone[axis], scales.line, 51u32.saturating_sub(k)));
         let turned = mobility.over_sigma(mul(gone[2], scales.turn, 33), 50u32.saturating_sub(k), 48);
         let speed = |axis: usize| clamp_i64(i128::from(read[axis]) << 28u32.saturating_add(k));
@@ -346,5 +388,7 @@ fn kick(start: &[i64; 3], end: [i64; 3], scales: &Scales) -> [i64; 3] {
     })
 }
 
+/// Slower than this nothing turns fast: 1/16 rad/s, Q48.
+pub(super) const TURNS: u64 = 1 << 44;
 /// π/4 with 30 fraction bits.
 const EIGHTH_TURN: i128 = 843_314_857;

@@ -12,8 +12,8 @@ pub(crate) struct Joint<'p> {
     pair: &'p Pair,
     /// Places among the movers.
     places: [u32; 2],
-    /// From a's centre to b's, Q32.
-    between: [i64; 2],
+    /// For each point, from a's centre to b's, Q32.
+    between: [[i64; 2]; 2],
     mobility: [&'p Mobility; 2],
     /// p and p·τ of both, Q28.
     share: [i32; 2],
@@ -31,7 +31,8 @@ struct Lever {
 }
 
 impl<'p> Joint<'p> {
-    pub(crate) fn new(pair: &'p Pair, places: [u32; 2], between: [i64; 2], mobility: [&'p Mobility; 2]) -> Self {
+    #[inline(always)]
+    pub(crate) fn new(pair: &'p Pair, places: [u32; 2], between: [[i64; 2]; 2], mobility: [&'p Mobility; 2]) -> Self {
         const ONE: i32 = 1 << 28;
         let first = mobility[0].share(mobility[1]);
         let second = if mobility[1].moves() { ONE.saturating_sub(first) } else { 0 };
@@ -43,7 +44,8 @@ impl<'p> Joint<'p> {
 
     /// α of both bodies along the normal and along the tangent (−n_y, n_x) at a point: r × n, and r × t = r·n. Across a
     /// gap each body has the point on its own surface, where it will be when the gap has closed.
-    fn arms(&self, point: &Point) -> [[i32; 2]; 2] {
+    #[inline(always)]
+    fn arms(&self, at: usize, point: &Point) -> [[i32; 2]; 2] {
         const LIMIT: i64 = (8 << 28) - 1;
         let half = point.separation.max(0) >> 1;
         let out = self.pair.manifold.normal.map(|n| mul(half, n.into(), 30));
@@ -55,7 +57,7 @@ impl<'p> Joint<'p> {
             }
             let r = [0, 1].map(|axis: usize| match body {
                 0 => point.arm[axis].saturating_add(out[axis]),
-                _ => point.arm[axis].saturating_sub(self.between[axis]).saturating_sub(out[axis]),
+                _ => point.arm[axis].saturating_sub(self.between[at][axis]).saturating_sub(out[axis]),
             });
             let [x, y] = self.mobility[body].relative(r);
             let along = lane::round::<28>(lane::sub(lane::mul(x, ny), lane::mul(y, nx)));
@@ -66,6 +68,7 @@ impl<'p> Joint<'p> {
         arms
     }
 
+    #[inline(always)]
     fn lever(&self, arm: [i32; 2]) -> Lever {
         let turn = [lane::scale(arm[0], self.inertia[0]), lane::scale(arm[1], self.inertia[1])];
         let kappa = lane::add(lane::scale(arm[0], turn[0]), lane::scale(arm[1], turn[1]));
@@ -73,6 +76,8 @@ impl<'p> Joint<'p> {
     }
 
     /// Writes the contact into a lane of a block. `old` is the pair's contact of the last tick, or an empty one.
+    // Into preparation, which is a fifth of a tick at rest, and once more into what few contacts need.
+    #[inline(always)]
     pub(crate) fn write(&self, block: &mut Block, i: usize, old: &Contact, friction: i64, scales: &Scales) {
         for axis in 0..2 {
             block.bodies[axis][i] = self.places[axis];
@@ -82,7 +87,7 @@ impl<'p> Joint<'p> {
         }
         let manifold = &self.pair.manifold;
         let points = &manifold.points[..manifold.count as usize];
-        let arms = [0, 1].map(|at| points.get(at).map(|point| self.arms(point)));
+        let arms = [0, 1].map(|at| points.get(at).map(|point| self.arms(at, point)));
         let lower = usize::from(points.len() > 1 && points[1].separation < points[0].separation);
         let tangent = arms[lower].map_or(Lever::default(), |[_, arm]| self.lever(arm));
         let mut carried = 0;
@@ -109,6 +114,7 @@ impl<'p> Joint<'p> {
 
 impl Row {
     /// Takes a lever, and the impulse λ̂ = κ·(λ·S) that the last tick left. 1/κ.
+    #[inline(always)]
     fn put(&mut self, i: usize, lever: &Lever, start: i64) -> i32 {
         // κ is at least 2²⁸, or 0.
         let line = (1i64 << 56).saturating_add(lever.kappa >> 1).checked_div(lever.kappa).unwrap_or(0) as i32;
@@ -126,6 +132,7 @@ impl Row {
 
     /// What an impulse of this row adds by turning to the speed of a row with other arms, Q27. Limited to 11, which bodies
     /// of even density stay far below: beyond, a row learns of the rest in the next sweep, from w.
+    #[inline(always)]
     fn turns(&self, i: usize, arm: [i32; 2]) -> i32 {
         const LIMIT: i64 = 11 << 27;
         let part = |body: usize| lane::mul(self.turn[body][i], arm[body]);

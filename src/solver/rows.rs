@@ -6,6 +6,7 @@
 
 use super::mover::Mover;
 use super::scales::{SLOP, Scales};
+use crate::contact::Contact;
 use crate::num::lane::{self, add, mul, sub};
 
 /// Contacts side by side.
@@ -93,6 +94,51 @@ impl Block {
         (self.bodies[0][i], self.bodies[1][i]) = (0, 0);
     }
 
+    /// Whether a contact has been taken out.
+    pub(crate) fn is_retired(&self, i: usize) -> bool {
+        self.bodies[0][i] == self.bodies[1][i]
+    }
+
+    /// The impulses that a contact carries on.
+    pub(crate) fn carried(&self, i: usize) -> Contact {
+        let normal = [0, 1].map(|at| self.points[at].carried(i));
+        Contact { normal, tangent: self.friction.carried(i), ..Contact::default() }
+    }
+
+    /// Has `write` write a contact anew between sweeps, by where its bodies are then. Its impulses are taken back along
+    /// the old directions, and those that go on are given along the new ones: warm starting repeats what the rows hold.
+    pub(crate) fn renew(&mut self, i: usize, movers: &mut [Mover], write: impl FnOnce(&mut Block)) {
+        let given = |block: &Block| [&block.friction, &block.points[0], &block.points[1]].map(|row| row.impulse[i]);
+        let peak = [self.peak[0][i], self.peak[1][i]];
+        self.give(i, movers, given(self).map(i32::saturating_neg));
+        write(self);
+        self.give(i, movers, given(self));
+        for (at, peak) in peak.into_iter().enumerate() {
+            self.peak[at][i] = self.peak[at][i].max(peak);
+        }
+        self.backdate(i, movers);
+    }
+
+    /// Of a contact whose separations are of now: those with which the tick would have begun.
+    pub(crate) fn backdate(&mut self, i: usize, movers: &[Mover]) {
+        let [a, b] = [0, 1].map(|body: usize| &movers[self.bodies[body][i] as usize]);
+        for at in 0..2 {
+            let separation = self.separation[at][i];
+            if separation < i32::MAX {
+                self.separation[at][i] = lane::limit(sub(separation.into(), self.moved(i, at, a, b)));
+            }
+        }
+    }
+
+    /// A free lane in which a contact of these bodies shares none that moves; `free`: by place, what does not.
+    pub(crate) fn vacancy(&self, places: [u32; 2], free: &[bool]) -> Option<usize> {
+        let shares = |place: &u32| places.contains(place) && !free[*place as usize];
+        if self.bodies.as_flattened().iter().any(shares) {
+            return None;
+        }
+        (0..LANES).find(|&i| self.is_retired(i))
+    }
+
     /// One sweep over the contacts whose bits are set: friction first, then the normals, which must hold. When `BIASED`,
     /// overlaps are pushed apart through the soft rows; else the rows only stop what approaches.
     #[inline(never)]
@@ -152,8 +198,10 @@ impl Block {
         let mut speed = [0, 1].map(|at| add(along, turning(&self.points[at], w)));
         let load = [0, 1].map(|at| self.points[at].impulse[i]);
 
-        let moved = self.moved(i, a, b);
-        let separation = [0, 1].map(|at| lane::limit(add(self.separation[at][i].into(), moved[at])));
+        let separation = [0, 1].map(|at| {
+            let moved = self.moved(i, at, a, b);
+            lane::limit(add(self.separation[at][i].into(), moved))
+        });
 
         let mut change = [0; 3];
         if FRICTION {
@@ -184,36 +232,13 @@ impl Block {
         (change[1].abs().max(change[2].abs()) >= BLOW as i32, pushes_first | pushes_second)
     }
 
-    /// How far the points have come apart since the tick began, Q26.
+    /// How much farther apart a point is than when the tick began, by its direction and arms: Q26.
     #[inline(always)]
-    fn moved(&self, i: usize, a: &Mover, b: &Mover) -> [i64; 2] {
+    fn moved(&self, i: usize, at: usize, a: &Mover, b: &Mover) -> i64 {
         let d = [0, 1].map(|axis| sub(a.d[axis].into(), b.d[axis].into()));
         let apart = add(lane::times(self.normal[0][i], d[0]), lane::times(self.normal[1][i], d[1]));
-        let phi = [a.phi as i32, b.phi as i32];
-        [0, 1].map(|at| {
-            let arm = self.points[at].arm.map(|arm| arm[i]);
-            lane::round::<28>(add(apart, sub(mul(arm[0], phi[0]), mul(arm[1], phi[1]))))
-        })
-    }
-
-    /// Of a contact whose separations are of now: those with which the tick would have begun.
-    pub(crate) fn backdate(&mut self, i: usize, movers: &[Mover]) {
-        let [a, b] = [0, 1].map(|body: usize| &movers[self.bodies[body][i] as usize]);
-        let moved = self.moved(i, a, b);
-        for (separation, moved) in self.separation.iter_mut().zip(moved) {
-            if separation[i] < i32::MAX {
-                separation[i] = lane::limit(sub(separation[i].into(), moved));
-            }
-        }
-    }
-
-    /// A free lane in which a contact of these bodies shares none that moves; `free`: by place, what does not.
-    pub(crate) fn vacancy(&self, places: [u32; 2], free: &[bool]) -> Option<usize> {
-        let shares = |place: &u32| places.contains(place) && !free[*place as usize];
-        if self.bodies.as_flattened().iter().any(shares) {
-            return None;
-        }
-        (0..LANES).find(|&i| self.bodies[0][i] == self.bodies[1][i])
+        let arm = &self.points[at].arm;
+        lane::round::<28>(add(apart, sub(mul(arm[0][i], a.phi as i32), mul(arm[1][i], b.phi as i32))))
     }
 
     /// What the last tick's impulses do to the bodies.

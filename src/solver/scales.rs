@@ -1,7 +1,7 @@
 //! The constants of a world's contact solver.
 
 use crate::contact::Margins;
-use crate::num::{TURN_PER_RADIAN_Q64, Time, div, mul, round_shift};
+use crate::num::{TURN_PER_RADIAN_Q64, Time, clamp_i64, div, mul, round_shift};
 
 /// Softness: a contact is a spring and damper of this frequency, as a part of the substep rate, and of this damping
 /// ratio; then nothing depends on the rate. Of it follow, with x = 2π·c and a = 2ζ + x:
@@ -71,6 +71,8 @@ pub(crate) struct Scales {
     pub(crate) slack: i64,
     /// How near is touching, Q32 m.
     pub(crate) touching: i64,
+    /// The change of speed with which a body comes [`Scales::astray`] within a tick, Q48 m/s over 2^k.
+    pub(crate) aside: i64,
 }
 
 impl Scales {
@@ -96,6 +98,7 @@ impl Scales {
             tick_turn: div(TURN_PER_RADIAN_Q64, i128::from(tick_rate).saturating_mul(2)) as i64,
             slack: SLACK << shift,
             touching: i64::from(SLOP) << shift.saturating_add(6),
+            aside: (MARGIN / 2).saturating_mul(tick_rate.into()) << 16,
         }
     }
 
@@ -128,18 +131,17 @@ impl Scales {
     }
 
     /// The least speed of approach at which what was taken from the rows is answered as an impact, Q48 m/s; `borne`: rows
-    /// bear a load there, and take what is slower.
-    pub(crate) fn least_strike(&self, restitution: i64, borne: bool) -> i64 {
+    /// bear a load there, and take what is slower, and goes in a substep less than an eighth of what reaches so far, Q32 m.
+    pub(crate) fn least_strike(&self, restitution: i64, borne: bool, reach: i64) -> i64 {
         if restitution >= SPEED {
             return SPEED / 1_000_000;
         }
-        let least = match (borne, restitution > 0) {
-            (true, false) => SPEED * 8,
-            (true, true) => SPEED * 2,
-            (false, false) => SPEED / 2,
-            (false, true) => SPEED / 100,
-        };
-        least << self.shift
+        let plain = if restitution > 0 { SPEED / 100 } else { SPEED / 2 } << self.shift;
+        if !borne {
+            return plain;
+        }
+        let most = if restitution > 0 { SPEED * 2 } else { SPEED * 8 } << self.shift;
+        most.min(clamp_i64(i128::from(reach).saturating_mul(self.rate.into()) << 13)).max(plain)
     }
 
     /// The speed beyond which a near pair parts, Q48 m/s: slower ones may be at rest, unless they bounce off everything.
@@ -151,6 +153,12 @@ impl Scales {
             (false, _) if press == 0 => threshold,
             (false, _) => SPEED << self.shift,
         }
+    }
+
+    /// How far from the way on which it was looked for neighbours a body that rows push may be, Q32 m: half of what is
+    /// looked around for contacts, so that two that meet have come as far as that together.
+    pub(crate) fn astray(&self) -> i64 {
+        self.margins.base / 2
     }
 
     /// The speed of rims from which on what touches elsewhere may follow, Q48 m/s: 1 m/s, 2 cm in a tick.

@@ -8,9 +8,10 @@
 //! Source: conservative advancement after Mirtich (1996); time-ordered events with local body times.
 
 mod answer;
+mod astray;
 mod neighbours;
 
-use super::flight::{Flights, NONE, Past, State, TICK, motion};
+use super::flight::{Flight, Flights, NONE, Past, State, TICK, motion};
 use super::mobility::Mobility;
 use super::mover::Movers;
 use super::rows::{Block, LANES};
@@ -107,6 +108,12 @@ impl Stage<'_> {
         manifold.is_some_and(|m| m.points[..m.count as usize].iter().all(|p| p.separation > self.scales.touching))
     }
 
+    /// How far the smaller of two colliders reaches.
+    fn smaller(&self, colliders: [u32; 2]) -> i64 {
+        let [a, b] = colliders.map(|slot| self.colliders.outline(slot as usize).reach);
+        a.min(b)
+    }
+
     /// Whether the rows of a pair bear a load now.
     fn bears(&self, pair: u32) -> bool {
         let row = self.touch.pairs.get(pair as usize).map_or(NONE, |pair| pair.row);
@@ -133,7 +140,7 @@ pub(crate) struct Timeline {
     from: i64,
     engaged: Vec<Engaged>,
     queue: BinaryHeap<Reverse<(i64, u32, u32, u32)>>,
-    /// Places of flights that were struck.
+    /// Places of flights that were struck, or that rows sent astray.
     struck: Vec<u32>,
     /// Pairs that were not among those of the tick and met: colliders, bodies.
     pub(crate) late: Vec<[[u32; 2]; 2]>,
@@ -211,7 +218,7 @@ impl Timeline {
         if free {
             self.retired.push(pair);
         }
-        let least = stage.scales.least_strike(restitution, held && stage.bears(pair));
+        let least = stage.scales.least_strike(restitution, held && stage.bears(pair), stage.smaller(colliders));
         let depth = stage.touch.pairs.get(pair as usize).map_or(0, |pair| pair.depth);
         self.engaged.push(Engaged {
             colliders,
@@ -238,13 +245,19 @@ impl Timeline {
         let pair = &mut self.engaged[at];
         pair.time = NEVER;
         let [a, b] = pair.flights.map(|place| &self.flights.list[place as usize]);
-        let strikes = a.strikes.max(b.strikes);
-        if strikes >= MOST {
+        // Who was struck too often stays, but others do not pass through it.
+        let stays = |flight: &Flight| flight.strikes >= MOST || !stage.mobilities[flight.slot as usize].moves();
+        if stays(a) && stays(b) {
             return;
         }
+        let strikes = a.strikes.max(b.strikes);
         // What is passed on often, rows take: but for what is too fast for them.
         let passed = pair.held && strikes >= PASSED_ON && pair.restitution < ONE;
-        let least = if passed { pair.least.max(scales.least_strike(0, true)) } else { pair.least };
+        let least = if passed {
+            pair.least.max(scales.least_strike(0, true, stage.smaller(pair.colliders)))
+        } else {
+            pair.least
+        };
         let from = from.max(a.time).max(b.time);
         let until = if a.pushed || b.pushed { end } else { TICK };
         if from > until {
@@ -324,6 +337,7 @@ impl Timeline {
         for place in 0..self.flights.list.len() {
             any |= self.push(place, stage, movers);
         }
+        self.look_aside(to, stage, movers);
         for at in 0..if any { self.engaged.len() } else { 0 } {
             let Engaged { flights, held, restitution, .. } = self.engaged[at];
             let pushed = flights.iter().any(|&place| self.flights.list[place as usize].pushed);
@@ -342,9 +356,6 @@ impl Timeline {
             let begin = self.past.state(slot);
             flight.state = movers.state(flight.place, &begin, &stage.mobilities[slot], stage.scales);
             (flight.time, flight.gain, flight.pushed) = (self.from, [0; 3], true);
-            if flight.strikes > 0 {
-                flight.surround(stage.mobilities[slot].reach, stage.scales);
-            }
         }
         pushed
     }

@@ -8,10 +8,12 @@ use super::{AGAIN, Engaged, FLAT, LATE, LATER, LEAP, MANY, MOST, NEVER, OFTEN, R
 use crate::contact::{Collision, Pace};
 use crate::geom::{Rot, Vec2};
 use crate::motion::{Bound, Fault};
-use crate::narrow::{Manifold, collide};
+use crate::narrow::{Manifold, Point, collide};
 use crate::num::{Angle, AngularVelocity, Velocity, add_sat, clamp_i64, lane::next, mul, round_shift};
 use crate::shape::Placed;
 
+/// By how many strikes one counts against a body that stays.
+const SOON: u32 = 40;
 /// So many contacts are answered together at most, but for those that meet at one time.
 const BLOCK: usize = 64;
 
@@ -91,10 +93,17 @@ impl Timeline {
                 // It rests, and is a row's in the next tick: until then it is not answered over and over.
                 pair.least = pair.least.max(stage.scales.least_settled());
             }
-            pair.answers = pair.answers.saturating_add(1);
+            let stays = a.strikes.max(b.strikes) >= MOST;
+            let flights = pair.flights;
+            (pair.answers, pair.misses) = (pair.answers.saturating_add(1), 0);
             self.restitutions.push(if bounces { pair.restitution } else { 0 });
             self.strikes.push(strike);
             self.members.push(at);
+            // Who meets one that stays comes to that soon, or a crowd would strike it for as long as each may.
+            for place in flights.into_iter().filter(|_| stays) {
+                let strikes = &mut self.flights.list[place as usize].strikes;
+                *strikes = strikes.saturating_add(SOON);
+            }
         }
     }
 
@@ -132,14 +141,27 @@ impl Timeline {
 
     /// The contact of a pair at a time, if it touches; its bodies are taken in.
     fn contact(&mut self, at: u32, time: i64, stage: &Stage<'_>) -> Option<Strike> {
-        let pair = &self.engaged[at as usize];
-        let bodies = pair.flights.map(|place| self.local(place, time, stage));
-        let pair = &self.engaged[at as usize];
-        let [a, b] = pair.flights.map(|place| &self.flights.list[place as usize]);
+        let (places, spent) = (self.engaged[at as usize].flights, self.overspent() > 0);
+        let bodies = places.map(|place| self.local(place, time, stage));
+        let pair = &mut self.engaged[at as usize];
+        let [a, b] = places.map(|place| &self.flights.list[place as usize]);
         let (manifold, between) = touching(pair, a, b, stage)?;
+        // What closes hundreds of times in a tick gets deeper by half of what touching is each time.
+        let overlap = |point: &Point| point.separation.saturating_neg();
+        pair.depth = manifold.points.iter().map(overlap).fold(pair.depth, i64::max);
         let mobility = [a, b].map(|flight| &stage.mobilities[flight.slot as usize]);
-        let joined = pair.answers >= OFTEN && (pair.restitution < ONE || self.overspent() > 0);
-        Some(Strike::new(bodies, &manifold, between, mobility, pair.friction, joined))
+        let joined = pair.answers >= OFTEN && (pair.restitution < ONE || spent);
+        let of = |manifold: &Manifold| Strike::new(bodies, manifold, between, mobility, pair.friction, joined);
+        let [p, q] = manifold.points;
+        if manifold.count < 2 || p.separation.abs_diff(q.separation) <= FLAT.unsigned_abs() {
+            return Some(of(&manifold));
+        }
+        // Of two points that are not level the lower: but where both overlap already, it may part while the other closes.
+        let [low, high] = if p.separation < q.separation { [p, q] } else { [q, p] };
+        let alone = |point: Point| of(&Manifold { count: 1, points: [point, Point::default()], ..manifold.clone() });
+        let strike = alone(low);
+        let other = high.separation <= 0 && strike.approach(&self.speeds).saturating_neg() <= pair.least / 2;
+        Some(if other { alone(high) } else { strike })
     }
 
     /// The place of a body among those of the answer, to whose time it is brought.
@@ -187,9 +209,10 @@ impl Timeline {
             return;
         }
         flight.changed = true;
-        if flight.strikes == 0 {
+        if !flight.aside {
             self.struck.push(place);
         }
+        flight.aside = true;
         flight.strikes = flight.strikes.saturating_add(1);
         let bound = |speed: &i64| speed.unsigned_abs() >= LIMIT.unsigned_abs();
         if self.speeds[at].iter().any(bound) {
@@ -313,7 +336,7 @@ impl Timeline {
                 }
             }
             pair.held = true;
-            pair.least = stage.scales.least_strike(pair.restitution, true);
+            pair.least = stage.scales.least_strike(pair.restitution, true, stage.smaller(pair.colliders));
             settled.push(Settled { pair: pair.pair, manifold, between });
         }
     }
@@ -339,7 +362,7 @@ fn pace(state: &State) -> Pace {
     Pace { velocity: Vec2::new(x, y), angular_velocity: AngularVelocity::from_bits(state.omega) }
 }
 
-/// Where a pair touches: its manifold, and the way from a's centre to b's. Of two points that are not level, the lower.
+/// Where a pair touches: its manifold, and the way from a's centre to b's.
 fn touching(pair: &Engaged, a: &Flight, b: &Flight, stage: &Stage<'_>) -> Option<(Manifold, [i64; 2])> {
     let outlines = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
     let placed = [(outlines[0], a), (outlines[1], b)]
@@ -347,14 +370,7 @@ fn touching(pair: &Engaged, a: &Flight, b: &Flight, stage: &Stage<'_>) -> Option
     let between = [0, 1].map(|axis: usize| b.state.x[axis].saturating_sub(a.state.x[axis]));
     let size = (outlines[0].reach.max(outlines[1].reach) >> 34).saturating_add(1);
     let reach = REACH.saturating_mul(size);
-    let mut manifold = collide(&placed[0], &placed[1], between, reach.saturating_add(FLAT));
-    if manifold.count == 2 {
-        let [p, q] = manifold.points;
-        if p.separation.abs_diff(q.separation) > FLAT.unsigned_abs() {
-            manifold.points[0] = if p.separation < q.separation { p } else { q };
-            manifold.count = 1;
-        }
-    }
+    let manifold = collide(&placed[0], &placed[1], between, reach.saturating_add(FLAT));
     let near = manifold.points[..manifold.count as usize].iter().any(|point| point.separation <= reach);
     near.then_some((manifold, between))
 }

@@ -9,6 +9,18 @@ use crate::num::mul;
 impl Timeline {
     /// A body that was struck goes another way: whom it may meet there.
     pub(super) fn meet_again(&mut self, place: usize, time: i64, to: i64, stage: &Stage<'_>, movers: &Movers) {
+        self.find_again(place, stage, movers, |timeline, bodies, pair| timeline.is_slow(bodies, pair, stage));
+        self.look_again(place, time, to, stage);
+    }
+
+    /// Takes in pairs of a body with those around its new way; of pairs that have rows those that are not `left` to them.
+    pub(super) fn find_again(
+        &mut self,
+        place: usize,
+        stage: &Stage<'_>,
+        movers: &Movers,
+        left: impl Fn(&Self, [u32; 2], u32) -> bool,
+    ) {
         let Stage { bodies, colliders, touch, .. } = *stage;
         let Flight { slot, around, .. } = self.flights.list[place];
         let (mut found, mut known) = (core::mem::take(&mut self.found), core::mem::take(&mut self.known));
@@ -32,19 +44,19 @@ impl Timeline {
                 }
                 let (pair, held) = touch.pair_of([a, b]);
                 let of = [a, b].map(|at| colliders.rows.value(at as usize).body);
-                if !(held && self.is_slow(of, pair, stage)) && touch.may_strike([a, b], bodies, colliders) {
+                if !(held && left(self, of, pair)) && touch.may_strike([a, b], bodies, colliders) {
                     self.add([a, b], of, pair, held, stage, movers);
                 }
             }
         }
         (self.found, self.known) = (found, known);
-        self.look_again(place, time, to, stage);
     }
 
     /// Whether bodies with rows are so slow that these take whatever comes together.
     fn is_slow(&self, bodies: [u32; 2], pair: u32, stage: &Stage<'_>) -> bool {
         let restitution = stage.touch.pairs[pair as usize].restitution;
-        self.fastest(bodies, stage) < stage.scales.least_strike(restitution, stage.bears(pair))
+        let smaller = stage.smaller(stage.touch.pairs[pair as usize].colliders);
+        self.fastest(bodies, stage) < stage.scales.least_strike(restitution, stage.bears(pair), smaller)
     }
 
     /// A bound of the speed of points of two bodies against each other, Q48 m/s.
@@ -62,7 +74,7 @@ impl Timeline {
     fn way(&self, collider: u32, stage: &Stage<'_>) -> Aabb {
         let body = stage.colliders.rows.value(collider as usize).body as usize;
         match self.flights.known(body) {
-            Some(flight) if flight.strikes > 0 => flight.around,
+            Some(flight) if flight.aside => flight.around,
             _ => {
                 let (State { x, v, .. }, margins) = (self.past.state(body), stage.scales.margins);
                 stage.touch.way(collider as usize, x, v, stage.drive.gain(body, margins.tick), margins)
