@@ -564,7 +564,7 @@ fn a_force_that_is_set_persists_and_one_that_is_applied_lasts_a_tick() {
     assert_eq!(velocity(&world, applied), velocity(&world, set));
     assert_eq!(omega(&world, applied), omega(&world, set));
     let forces =
-        |parts: [tamias2d::HashPart; 8]| parts.into_iter().find(|part| part.name == "forces").expect("a part").hash;
+        |parts: [tamias2d::HashPart; 9]| parts.into_iter().find(|part| part.name == "forces").expect("a part").hash;
     assert_ne!(forces(world.hash_parts()), forces(moving), "the applied force is gone from the state");
     for tick in 2..=5 {
         world.step();
