@@ -206,8 +206,8 @@ impl Resting {
             j = j.saturating_add(usize::from(b <= a));
             if is_resting(&contact, bodies, colliders) { &mut *down } else { &mut *up }.push(&contact);
         }
-        core::mem::swap(awake, up);
-        core::mem::swap(contacts, down);
+        awake.clone_from(up);
+        contacts.clone_from(down);
         self.derive(awake, bodies, colliders);
     }
 
