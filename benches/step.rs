@@ -3,7 +3,7 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
-use tamias2d::{Attractor, BodyDef, BodyKind, ColliderDef, Commands, Shape, Sleeping, Vec2, World, WorldDef};
+use tamias2d::{Attractor, BodyDef, BodyKind, ColliderDef, Commands, Length, Shape, Sleeping, Vec2, World, WorldDef};
 
 /// `count` free bodies on a grid, each with its own velocity and spin, with or without a box of 1 m.
 fn free_bodies(count: u32, gravity: f64, solid: bool) -> World {
@@ -73,6 +73,34 @@ fn sleepers(columns: u32, rows: u32) -> World {
     world
 }
 
+/// Boxes and discs that have fallen into a bin 30 m wide, after as many seconds.
+fn pile(count: u32, sleeping: Option<Sleeping>, seconds: u32) -> World {
+    let gravity = Vec2::from_f64(0.0, -9.81).expect("in range");
+    let mut world = World::new(&WorldDef { gravity, sleeping, ..WorldDef::default() }).expect("accepted");
+    let length = |metres: f64| Length::from_f64(metres).expect("in range");
+    let mut create = |kind, x, y, shape| {
+        let (position, colliders) = (Vec2::from_f64(x, y).expect("in range"), vec![ColliderDef::new(shape)]);
+        world.create_body(&BodyDef { kind, position, colliders, ..BodyDef::default() }).expect("accepted");
+    };
+    create(BodyKind::Static, 0.0, -1.0, Shape::Box { width: length(40.0), height: length(2.0) });
+    for x in [-16.0, 16.0] {
+        create(BodyKind::Static, x, 60.0, Shape::Box { width: length(2.0), height: length(124.0) });
+    }
+    for i in 0..count {
+        let (x, y) = (f64::from(i % 25) * 1.15 - 13.8 + 0.1 * f64::from(i % 3), 1.0 + 1.2 * f64::from(i / 25));
+        let size = 0.6 + 0.1 * f64::from(i % 5);
+        let shape = match i % 4 {
+            0 => Shape::Circle { radius: length(size / 2.0) },
+            _ => Shape::Box { width: length(size), height: length(1.4 - size) },
+        };
+        create(BodyKind::Dynamic, x, y, shape);
+    }
+    for _ in 0..60 * seconds {
+        world.step();
+    }
+    world
+}
+
 fn step(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");
     for count in [100, 1_000, 10_000, 100_000] {
@@ -90,6 +118,8 @@ fn step(c: &mut Criterion) {
         let mut world = pyramid(rows, None);
         group.bench_function(BenchmarkId::new("pyramid", rows), |b| b.iter(|| world.step()));
     }
+    let mut world = pile(1000, None, 40);
+    group.bench_function("pile/1000", |b| b.iter(|| world.step()));
     // What sleeping costs what is awake.
     let mut world = pyramid(40, Some(Sleeping::default()));
     group.bench_function("pyramid that may sleep/40", |b| b.iter(|| world.step()));
@@ -109,6 +139,9 @@ fn step(c: &mut Criterion) {
         world.step();
     }
     group.bench_function("pyramid/40", |b| b.iter(|| world.step()));
+    let mut world = pile(1000, Some(Sleeping::default()), 40);
+    let awake = world.bodies().filter(|body| body.kind() == BodyKind::Dynamic && body.is_awake()).count();
+    group.bench_function(format!("pile, {awake} awake/1000"), |b| b.iter(|| world.step()));
     for count in [1u32, 10_000] {
         let mut world = sleepers(count.div_ceil(10), count.min(10));
         // A box on the ground that must not sleep.

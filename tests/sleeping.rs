@@ -289,34 +289,78 @@ fn a_hit_wakes_the_whole_stack_in_its_tick_and_nobody_else() {
     }
 }
 
+/// Steps until something wakes; the world as it was before that tick.
+fn until_woken(world: &mut World, most: u64) -> World {
+    for _ in 0..most {
+        let (before, awake) = (world.clone(), up(world));
+        world.step();
+        if up(world) > awake {
+            return before;
+        }
+    }
+    panic!("nothing wakes");
+}
+
 #[test]
-fn a_tick_that_wakes_is_that_of_a_world_in_which_nobody_slept() {
-    // A stack that is as it lay when it fell asleep, but for velocities of 1e-5 m/s: after the hit both go on alike.
-    let (mut world, _) = floor();
-    let ids = stack(&mut world, 0.0, 5);
-    until_asleep(&mut world, 200);
-    let mut sleeps = world.clone();
-    for &id in &ids {
-        world.wake(id).expect("accepted");
+fn a_tick_that_wakes_is_that_of_a_world_in_which_the_island_was_awake() {
+    for (seed, speed) in [(1, 3.0), (2, 20.0), (3, 80.0), (4, 300.0)] {
+        let (mut world, _) = floor();
+        if seed % 2 == 0 {
+            pile(&mut world, 40, seed);
+        } else {
+            stack(&mut world, 0.0, 6);
+        }
+        until_asleep(&mut world, 1800);
+        let sleepers: Vec<BodyId> = world.bodies().map(|body| body.id()).collect();
+        let ball = surface(disc(0.3), 0.4, 0.5);
+        add(&mut world, BodyDef { angular_velocity: spin(3.0), ..moving(solid(0.3, 12.0, ball), 0.0, -speed) });
+        let mut before = until_woken(&mut world, 600);
+        for &id in sleepers.iter().filter(|&&id| awake(&world, id) && get(&world, id).kind() == BodyKind::Dynamic) {
+            before.wake(id).expect("accepted");
+        }
+        for _ in 0..20 {
+            // Whoever else wakes in the ticks after wakes in both.
+            before.step();
+            assert_eq!(before.hash(), world.hash(), "{speed} m/s");
+            assert_eq!(before.events(), world.events());
+            assert_eq!(before.collisions(), world.collisions());
+            world.step();
+        }
     }
-    assert_eq!(up(&world), 5);
-    for world in [&mut world, &mut sleeps] {
-        add(world, moving(solid(-1.0, 2.5, disc(0.25)), 20.0, 0.0));
+}
+
+/// The greatest gain of energy in a tick, and in a tick in which something wakes, of a pile onto which balls fall; and how
+/// many such ticks there are.
+fn gains(sleeping: Option<Sleeping>) -> (f64, f64, usize) {
+    let gravity = acc(0.0, -9.81);
+    let mut world = World::new(&WorldDef { gravity, sleeping, ..WorldDef::default() }).expect("accepted");
+    add(&mut world, fixed(0.0, -1.0, rectangle(200.0, 2.0)));
+    pile(&mut world, 50, 21);
+    let (mut most, mut waking, mut wakes) = (0.0f64, 0.0f64, 0);
+    for tick in 0..1500 {
+        if tick > 400 && tick % 90 == 0 {
+            let ball = solid(-3.0 + (tick % 7) as f64, 16.0, surface(disc(0.4), 0.6, 0.2));
+            add(&mut world, moving(ball, (tick % 5) as f64 - 2.0, -8.0));
+        }
+        let (awake, before) = (up(&world), energy(&world));
+        world.step();
+        let gain = energy(&world) - before;
+        most = most.max(gain);
+        if up(&world) > awake {
+            (waking, wakes) = (waking.max(gain), wakes + 1);
+        }
     }
-    let mut ticks = 0;
-    while sleeps.bodies().filter(|body| ids.contains(&body.id())).all(|body| !body.is_awake()) {
-        (world.step(), sleeps.step());
-        ticks += 1;
-        assert!(ticks < 10);
-    }
-    for &id in &ids {
-        let (a, b) = (get(&world, id), get(&sleeps, id));
-        common::close2(a.velocity().to_f64(), b.velocity().to_f64(), 2e-3);
-        close(a.angular_velocity().to_f64(), b.angular_velocity().to_f64(), 5e-3);
-    }
-    // The momentum of the ball is theirs, but for what friction gave the floor.
-    let momentum: f64 = ids.iter().map(|&id| get(&sleeps, id).velocity().x.to_f64()).sum();
-    assert!(momentum > 1.0, "{momentum}");
+    (most, waking, wakes)
+}
+
+#[test]
+fn waking_adds_no_energy() {
+    let ((most, waking, wakes), (without, _, none)) = (gains(Some(Sleeping::default())), gains(None));
+    println!(
+        "{wakes} wakings; gained in one of them {waking:.1e} J, in a tick {most:.1e}, without sleeping {without:.1e}"
+    );
+    assert_eq!(none, 0);
+    assert!(wakes > 5 && waking < 0.01 && most < 2.0 * without);
 }
 
 #[test]
