@@ -220,8 +220,9 @@ impl Record for Rest {
 
 impl Bodies {
     /// Whether a body stays where it is in every tick: a static one, and one that sleeps.
+    #[inline]
     pub(crate) fn is_still(&self, slot: usize) -> bool {
-        self.rest.is_asleep(slot) || self.cold.value(slot).kind == super::BodyKind::Static
+        self.cold.value(slot).kind == super::BodyKind::Static || self.rest.is_asleep(slot)
     }
 
     /// Whether a body is so slow that it is quiet: both its speeds up to `speed`, Q48 m/s, of the rim as of the centre.

@@ -171,11 +171,12 @@ impl Touch {
         self.broad.update(shift, swept, |a, b| wanted(bodies, colliders, a as usize, b as usize));
 
         self.now = self.now.wrapping_add(1);
+        let any_asleep = bodies.rest.any_asleep();
         let mut old = 0;
         for at in 0..self.broad.candidates().len() {
             let (a, b) = self.broad.candidates()[at];
             let body = [self.proxies[a as usize].body, self.proxies[b as usize].body];
-            if rests(bodies, colliders, [a, b], body) {
+            if any_asleep && rests(bodies, colliders, [a, b], body) {
                 continue;
             }
             let still = body.map(|slot| bodies.is_still(slot as usize));
