@@ -177,7 +177,8 @@ fn without_sleeping_nothing_sleeps_and_with_it_nothing_moves_otherwise_until_it_
     let mut ticks = 0;
     while up(&on) == 40 {
         assert_eq!(all_bits(&off), all_bits(&on), "tick {ticks}");
-        (off.step(), on.step());
+        off.step();
+        on.step();
         ticks += 1;
         assert!(ticks < 1200, "somebody falls asleep");
     }
@@ -379,7 +380,8 @@ fn what_is_hit_hits_what_sleeps_farther_on_in_the_same_tick() {
     };
     let ((mut slept, ids, cue), (mut never, ..)) = (build(false), build(true));
     for _ in 0..3 {
-        (slept.step(), never.step());
+        slept.step();
+        never.step();
         assert_eq!(all_bits(&slept), all_bits(&never));
         assert_eq!(slept.collisions(), never.collisions());
         slept.check().expect("every invariant holds");
@@ -477,7 +479,8 @@ fn every_command_that_touches_what_sleeps_wakes_it() {
         world.check().unwrap_or_else(|error| panic!("{name}: {error}"));
         let mut twin = World::load(&world.save()).expect("just saved");
         for _ in 0..100 {
-            (world.step(), twin.step());
+            world.step();
+            twin.step();
             assert_eq!(world.hash(), twin.hash(), "{name}");
             world.check().unwrap_or_else(|error| panic!("{name}: {error}"));
         }
@@ -735,7 +738,8 @@ fn the_order_of_creation_has_no_say() {
             }
         }
         let before = up(&one);
-        (one.step(), other.step());
+        one.step();
+        other.step();
         for (a, b) in names.iter().zip(&others) {
             assert_eq!(awake(&one, *a), awake(&other, *b), "tick {tick}");
             assert_eq!(bits(&get(&one, *a)), bits(&get(&other, *b)), "{a} in tick {tick}");
@@ -921,7 +925,8 @@ proptest! {
                 }
             }
             let before = up(&world);
-            (world.step(), twin.step());
+            world.step();
+            twin.step();
             (slept, woke) = (slept || up(&world) < before, woke || up(&world) > before);
             prop_assert_eq!(world.check(), Ok(()));
             prop_assert_eq!(world.hash(), twin.hash());

@@ -14,7 +14,7 @@ pub struct Sleeping {
     /// The speed, in m/s, up to which a body is quiet: that of its centre of mass, and that of its rim, |ω| times its reach
     /// (for a body without colliders times 1 m). 0 … 400, times 2^k with k the world's `unit_shift`. 0.05 by default.
     pub speed: Velocity,
-    /// For how long all have to be quiet, in s, 0 … 1000, rounded up to ticks; one at least. 0.5 by default.
+    /// For how long all have to be quiet, in s, 0 … 1000, rounded to ticks; one at least. 0.5 by default.
     pub time: Time,
 }
 
@@ -43,7 +43,7 @@ impl Sleeping {
     /// The speed, Q48 m/s, and the number of ticks.
     pub(crate) fn limits(&self, tick_rate: u32, unit_shift: u32) -> (i64, u32) {
         let ticks = i128::from(self.time.to_bits()).saturating_mul(tick_rate.into());
-        let ticks = ticks.saturating_add((1 << 48) - 1) >> 48;
+        let ticks = ticks.saturating_add(1 << 47) >> 48;
         (self.speed.to_bits() << unit_shift, (ticks as u32).max(1))
     }
 }

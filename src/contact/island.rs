@@ -197,8 +197,7 @@ impl Resting {
         down.clear();
         let (mut i, mut j) = (0, 0);
         while i < awake.len() || j < contacts.len() {
-            let key =
-                |list: &Contacts, at: usize| (at < list.len()).then(|| list.key(at)).unwrap_or((u32::MAX, u32::MAX));
+            let key = |list: &Contacts, at: usize| if at < list.len() { list.key(at) } else { (u32::MAX, u32::MAX) };
             let (a, b) = (key(awake, i), key(contacts, j));
             let contact = if b <= a { contacts.get(j) } else { awake.get(i) };
             // A pair is on one list only.
