@@ -83,7 +83,7 @@ impl World {
 
     /// XXH3-64 over the complete state: over the hashes of [`World::hash_parts`], in their order.
     ///
-    /// Cost: one pass over the bodies' columns (48 bytes a body); what only commands change is covered by digests
+    /// Cost: one pass over the bodies' columns (48 bytes a body, 52 with sleeping); what only commands change is covered by digests
     /// that commands renew.
     pub fn hash(&self) -> u64 {
         let mut hasher = Hasher::new();
