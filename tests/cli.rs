@@ -168,6 +168,33 @@ fn script_creates_and_destroys() {
 }
 
 #[test]
+fn sleepers_are_shown_where_bodies_sleep() {
+    let scene = |sleeping: &str| {
+        let bodies = r#"[{"name":"a"},{"name":"b","allow_sleep":false},{"name":"c","position":[9,0]}]"#;
+        let commands = r#"[{"tick":4,"do":{"wake":{"body":"a"}}},{"tick":1,"do":{"put_to_sleep":{"body":"c"}}}]"#;
+        format!(r#"{{"name":"n","tick_rate":60{sleeping},"bodies":{bodies},"commands":{commands}}}"#)
+    };
+    for (sleeping, asleep) in [
+        (r#","sleeping":{"time":0.05}"#, ["", "", "c", "ac", "ac", "c"]),
+        (r#","sleeping":true"#, ["", "", "c", "c", "c", "c"]),
+    ] {
+        let output = run(&scene(sleeping), &["--ticks", "5"]);
+        assert!(output.out.starts_with("tick,time,body,x,y,angle,turns,vx,vy,omega,asleep\n"), "{}", output.out);
+        for (tick, asleep) in asleep.into_iter().enumerate() {
+            let rows = output.out.lines().filter(|line| line.starts_with(&format!("{tick},")));
+            let names: String =
+                rows.filter(|row| row.ends_with(",true")).filter_map(|row| row.split(',').nth(2)).collect();
+            assert_eq!(names, asleep, "{sleeping}, tick {tick}: {}", output.out);
+        }
+    }
+    let json = run(&scene(r#","sleeping":true"#), &["--ticks", "2", "--format", "json"]);
+    assert!(json.out.contains(r#""omega":0,"asleep":true}"#), "{}", json.out);
+    // Where nobody sleeps the table is as ever, and the commands say so.
+    let output = run(&scene(r#","sleeping":false"#), &["--ticks", "1"]);
+    assert!(!output.out.contains("asleep"), "{}", output.out);
+}
+
+#[test]
 fn bad_scenes_are_refused_with_their_place() {
     let body = |keys: &str| format!(r#"{{"name":"n","tick_rate":60,"bodies":[{{}},{{{keys}}}]}}"#);
     let top = |keys: &str| format!(r#"{{"name":"n","tick_rate":60,"bodies":[],{keys}}}"#);
@@ -237,6 +264,11 @@ fn bad_scenes_are_refused_with_their_place() {
         (body(r#""user_data":-1"#), "bodies[1].user_data: invalid value"),
         (top(r#""unit_shift":11"#), "unit_shift 11 is outside 0 … 10"),
         (top(r#""unit_shift":-1"#), "unit_shift: invalid value"),
+        (top(r#""sleeping":1"#), "sleeping: invalid type: integer `1`, expected true, false or an object"),
+        (top(r#""sleeping":{"sped":1}"#), "sleeping.sped: unknown field `sped`"),
+        (top(r#""sleeping":{"time":1,"time":1}"#), "sleeping: duplicate field `time`"),
+        (top(r#""sleeping":{"speed":-1}"#), "speed of what falls asleep -1 m/s is outside 0 … 400 m/s"),
+        (body(r#""allow_sleep":1"#), "bodies[1].allow_sleep: invalid type"),
     ];
     for (scene, expected) in cases {
         refused(&scene, expected);

@@ -451,6 +451,7 @@ fn fr_input_getters_return_the_bits_that_were_set() {
         angular_damping: Damping::from_bits(1000 << 48),
         mu: tamias2d::Mu::from_bits(1),
         user_data: u64::MAX - 1,
+        allow_sleep: false,
         colliders: Vec::new(),
     };
     let mut created = world(0.0, 0.0);
@@ -471,6 +472,7 @@ fn fr_input_getters_return_the_bits_that_were_set() {
     world.set_damping(id, def.linear_damping, def.angular_damping).expect("accepted");
     world.set_mu(id, def.mu).expect("accepted");
     world.set_user_data(id, def.user_data).expect("accepted");
+    world.set_allow_sleep(id, false).expect("accepted");
     let body = world.body(id).expect("it exists");
     assert_eq!(body.def(), def);
     assert_eq!(
@@ -564,7 +566,7 @@ fn a_force_that_is_set_persists_and_one_that_is_applied_lasts_a_tick() {
     assert_eq!(velocity(&world, applied), velocity(&world, set));
     assert_eq!(omega(&world, applied), omega(&world, set));
     let forces =
-        |parts: [tamias2d::HashPart; 8]| parts.into_iter().find(|part| part.name == "forces").expect("a part").hash;
+        |parts: [tamias2d::HashPart; 9]| parts.into_iter().find(|part| part.name == "forces").expect("a part").hash;
     assert_ne!(forces(world.hash_parts()), forces(moving), "the applied force is gone from the state");
     for tick in 2..=5 {
         world.step();

@@ -652,7 +652,7 @@ fn a_command_that_is_refused_or_is_none_is_named() {
 
     let offset = (Forge::new(60).world(&start()).idle(hash).bytes.len()) as u64;
     for (commands, want) in [
-        (vec![26], DecodeError::Invalid { offset: 8, field: "command", reason: "has an unknown tag" }),
+        (vec![29], DecodeError::Invalid { offset: 8, field: "command", reason: "has an unknown tag" }),
         (vec![255], DecodeError::Invalid { offset: 8, field: "command", reason: "has an unknown tag" }),
         (set_user_data(TWO, 1)[..16].to_vec(), DecodeError::Truncated { offset: 17, field: "user_data" }),
     ] {

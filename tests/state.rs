@@ -7,7 +7,7 @@ use common::{Rng, Storm, acc, at, disc, measure, newton_seconds, newtons, num, r
 use proptest::prelude::{ProptestConfig, any, prop_assert, prop_assert_eq, prop_assert_ne, proptest};
 use tamias2d::{
     Angle, Attractor, AttractorId, BodyDef, BodyId, BodyKind, ColliderDef, ColliderId, CommandError, Commands,
-    DecodeError, Filter, HashPart, Integrator, Vec2, World, WorldDef,
+    DecodeError, Filter, HashPart, Integrator, Sleeping, Vec2, World, WorldDef,
 };
 
 #[global_allocator]
@@ -230,7 +230,7 @@ fn every_flipped_bit_of_a_save_is_refused_and_a_forged_one_is_a_world_or_refused
             assert!(largest <= save.len().max(8192), "byte {at} bit {bit} allocates {largest}");
             match at {
                 0..8 => assert_eq!(error, DecodeError::NotASave),
-                8..12 => assert!(matches!(error, DecodeError::Version { known: 3, .. }), "{error}"),
+                8..12 => assert!(matches!(error, DecodeError::Version { known: 4, .. }), "{error}"),
                 12..16 => assert!(matches!(error, DecodeError::Law { known: 4, .. }), "{error}"),
                 _ => {
                     let forged = at < save.len() - 8 && forge(&mut bytes);
@@ -285,7 +285,7 @@ fn what_is_no_save_is_refused_in_these_words() {
         bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
         bytes
     };
-    assert_eq!(text(&changed(8, 1)), "saved in format version 1, this build reads version 3");
+    assert_eq!(text(&changed(8, 1)), "saved in format version 1, this build reads version 4");
     assert_eq!(text(&changed(12, 7)), "saved under arithmetic law 7, this build computes by law 4");
     let mut longer = save.clone();
     longer.push(0);
@@ -512,7 +512,7 @@ fn parts(a: &World, b: &World) -> Vec<&'static str> {
 fn every_field_is_in_the_hash_and_a_difference_is_named_by_its_path() {
     type Change = fn(&mut World, BodyId, AttractorId) -> Result<(), CommandError>;
     let (world, ids, stars) = base();
-    let changes: [(&str, &str, Change); 29] = [
+    let changes: [(&str, &str, Change); 30] = [
         ("bodies[3].position.x", "motion", |w, b, _| w.set_position(b, at(3.5, 1.0))),
         ("bodies[3].position.y", "motion", |w, b, _| w.set_position(b, at(3.0, 1.5))),
         ("bodies[3].velocity.x", "motion", |w, b, _| w.set_velocity(b, vel(2.5, 3.0))),
@@ -552,6 +552,7 @@ fn every_field_is_in_the_hash_and_a_difference_is_named_by_its_path() {
         ("config.gravity.y", "configuration", |w, _, _| w.set_gravity(acc(0.25, -9.5))),
         ("pushes.len", "forces", |w, b, _| w.apply_force(b, newtons(1.0, 0.0), None)),
         ("pushes.len", "forces", |w, b, _| w.apply_torque(b, num("1"))),
+        ("bodies[3].allow_sleep", "bodies", |w, b, _| w.set_allow_sleep(b, false)),
     ];
     for (path, part, change) in changes {
         let mut other = world.clone();
@@ -626,6 +627,7 @@ fn configuration_tick_and_status_are_in_the_hash() {
         (WorldDef { integrator: Integrator::SymplecticEuler, ..WorldDef::default() }, "config.integrator"),
         (WorldDef { gravity: acc(0.0, 1.0), ..WorldDef::default() }, "config.gravity.y"),
         (WorldDef { unit_shift: 1, ..WorldDef::default() }, "config.unit_shift"),
+        (WorldDef { sleeping: Some(Sleeping::default()), ..WorldDef::default() }, "config.sleeping"),
     ] {
         let other = new(def);
         assert_ne!(other.hash(), plain.hash());

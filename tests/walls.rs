@@ -130,7 +130,7 @@ fn thrown_apart(rooms: u32, slowest: f64, fastest: f64) -> usize {
 fn few_bodies_that_begin_in_each_other_fly_through_walls() {
     let lost = thrown_apart(400, 400.0, 2000.0);
     println!("{lost} of 400 rooms lost a body");
-    // 4 and 5 were seen, by chance of history; 43 before who is sent astray was looked for again. The bar is 2 %.
+    // 4 and 5 were seen, by chance of history. The bar is 2 %.
     assert!(lost <= 8, "{lost} of 400 rooms lost a body");
 }
 

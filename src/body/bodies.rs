@@ -2,6 +2,7 @@
 
 use super::colliders::center_at;
 use super::def::{BodyData, BodyDef};
+use super::rest::Rest;
 use crate::geom::Vec2;
 use crate::num::{Angle, AngularVelocity, Length, Quantity, Velocity};
 use crate::store::{Arena, BodyId, Column, DecodeError, Diff, Hasher, Reader, Record, Sink};
@@ -13,6 +14,8 @@ macro_rules! table {
         #[derive(Debug, Default)]
         pub(crate) struct Bodies {
             pub(crate) cold: Arena<BodyData>,
+            /// Who sleeps.
+            pub(crate) rest: Rest,
             $($(#[$doc])* pub(crate) $column: Column<$quantity>,)*
         }
 
@@ -20,11 +23,12 @@ macro_rules! table {
             /// Brings every column to the arena's number of slots.
             fn grow(&mut self) {
                 $( while self.$column.len() < self.cold.len() { self.$column.push(<$quantity>::ZERO); } )*
+                self.rest.grow(self.cold.len());
             }
 
             /// The hash of the columns, each in one pass over its little-endian bytes.
             pub(crate) fn motion_hash(&self) -> u64 {
-                let Bodies { cold: _, $($column),* } = self;
+                let Bodies { cold: _, rest: _, $($column),* } = self;
                 let mut hasher = Hasher::new();
                 $( $column.hash().save(&mut hasher); )*
                 hasher.finish()
@@ -38,15 +42,17 @@ macro_rules! table {
 
         impl Record for Bodies {
             fn save(&self, sink: &mut impl Sink) {
-                let Bodies { cold, $($column),* } = self;
+                let Bodies { cold, rest, $($column),* } = self;
                 cold.save(sink);
                 $( $column.save(sink); )*
+                rest.save(sink);
             }
 
             fn load(reader: &mut Reader<'_>, field: &'static str) -> Result<Self, DecodeError> {
                 let offset = reader.offset();
                 let cold = Record::load(reader, "bodies")?;
-                let bodies = Bodies { cold, $($column: Record::load(reader, $path)?),* };
+                let mut bodies = Bodies { cold, rest: Rest::default(), $($column: Record::load(reader, $path)?),* };
+                bodies.rest = Record::load(reader, "quiet")?;
                 bodies.check_values().map_err(|reason| reader.invalid(offset, field, reason))?;
                 Ok(bodies)
             }
@@ -56,6 +62,8 @@ macro_rules! table {
                 for slot in 0..self.cold.len().min(other.cold.len()) {
                     diff.element(slot, |d| {
                         $( d.field($path, |d| self.$column.get(slot).diff(&other.$column.get(slot), d)); )*
+                        d.field("quiet", |d| self.rest.quiet(slot).diff(&other.rest.quiet(slot), d));
+                        d.field("asleep", |d| self.rest.is_asleep(slot).diff(&other.rest.is_asleep(slot), d));
                     });
                 }
             }
@@ -63,13 +71,14 @@ macro_rules! table {
 
         impl Clone for Bodies {
             fn clone(&self) -> Self {
-                let Bodies { cold, $($column),* } = self;
-                Bodies { cold: cold.clone(), $($column: $column.clone()),* }
+                let Bodies { cold, rest, $($column),* } = self;
+                Bodies { cold: cold.clone(), rest: rest.clone(), $($column: $column.clone()),* }
             }
 
             fn clone_from(&mut self, source: &Self) {
-                let Bodies { cold, $($column),* } = source;
+                let Bodies { cold, rest, $($column),* } = source;
                 self.cold.clone_from(cold);
+                self.rest.clone_from(rest);
                 $( self.$column.clone_from($column); )*
             }
         }
@@ -111,6 +120,7 @@ impl Bodies {
             self.angle.set(slot, Angle::ZERO);
             self.set_velocity(slot, Vec2::default());
             self.omega.set(slot, AngularVelocity::ZERO);
+            self.rest.rouse(slot);
         }
         removed
     }
@@ -146,12 +156,13 @@ impl Bodies {
     /// Every invariant of the table; what is wrong, if one is broken.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         self.cold.check()?;
+        self.rest.check(self.cold.len())?;
         self.check_values()
     }
 
     /// Whether columns are as long as the slots and values fit their bodies; what is wrong, if not.
     fn check_values(&self) -> Result<(), &'static str> {
-        if !self.is_rectangular() {
+        if !self.is_rectangular() || ![0, self.cold.len()].contains(&self.rest.len()) {
             return Err("has columns that are not as long as its slots");
         }
         for slot in 0..self.cold.len() {
@@ -161,9 +172,19 @@ impl Bodies {
                 if !at_zero || !velocity.is_zero() || omega != AngularVelocity::ZERO {
                     return Err("has a free slot that moves");
                 }
+                if self.rest.is_asleep(slot) || self.rest.quiet(slot) > 0 {
+                    return Err("has a free slot that sleeps");
+                }
                 continue;
             }
             let data = self.cold.value(slot);
+            if !data.is_dynamic() && (self.rest.is_asleep(slot) || self.rest.quiet(slot) > 0) {
+                return Err("has a body that sleeps though it is not dynamic");
+            }
+            let still = velocity.is_zero() && omega == AngularVelocity::ZERO;
+            if self.rest.is_asleep(slot) && !(still && data.allow_sleep) {
+                return Err("has a body that sleeps and must not, or moves");
+            }
             let angle = self.angle.get(slot).checked();
             if self.position(slot).checked().is_err() || angle.is_err() {
                 return Err("has a body outside the world");

@@ -61,6 +61,8 @@ pub struct BodyDef {
     pub mu: Mu,
     /// The game's own; stored, hashed, not looked at.
     pub user_data: u64,
+    /// Whether it may fall asleep, if the world has sleeping: it keeps awake what hangs together with it if not.
+    pub allow_sleep: bool,
     /// What of it collides. A body without colliders only moves.
     pub colliders: Vec<ColliderDef>,
 }
@@ -83,6 +85,7 @@ impl Default for BodyDef {
             angular_damping: Damping::ZERO,
             mu: Mu::ZERO,
             user_data: 0,
+            allow_sleep: true,
             colliders: Vec::new(),
         }
     }
@@ -104,6 +107,7 @@ record!(BodyDef {
     angular_damping,
     mu,
     user_data,
+    allow_sleep,
     colliders,
 });
 
@@ -197,6 +201,7 @@ pub(crate) struct BodyData {
     pub(crate) angular_damping: Damping,
     pub(crate) mu: Mu,
     pub(crate) user_data: u64,
+    pub(crate) allow_sleep: bool,
 }
 
 record!(BodyData {
@@ -213,6 +218,7 @@ record!(BodyData {
     angular_damping,
     mu,
     user_data,
+    allow_sleep,
 });
 
 impl Row for BodyData {}
@@ -249,6 +255,7 @@ impl BodyDef {
             angular_damping: self.angular_damping,
             mu: self.mu,
             user_data: self.user_data,
+            allow_sleep: self.allow_sleep,
         };
         data.check(self.velocity, self.angular_velocity)?;
         center_at(self.position, center, self.angle).checked()?;

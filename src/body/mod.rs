@@ -4,9 +4,11 @@ mod attractor;
 mod bodies;
 mod colliders;
 mod def;
+mod rest;
 
 pub use attractor::Attractor;
 pub(crate) use bodies::Bodies;
 pub(crate) use colliders::{Collider, Colliders, center_at, origin_of};
 pub(crate) use def::{BodyData, gyration};
 pub use def::{BodyDef, BodyError, BodyKind};
+pub use rest::Sleeping;

@@ -27,6 +27,8 @@ const REACH: i64 = 2;
 const MARGIN: i64 = 1 << 25;
 /// A frame that is farther away than this starts anew, so that coordinates in it do not saturate: 2²⁹ m.
 const FARTHEST: u64 = 1 << 61;
+/// So many proxies are looked at at once whether one moves.
+const STRIDE: usize = 64;
 /// So many changed fixed boxes are looked at one by one, more as one box around all.
 const CHANGES: usize = 8;
 
@@ -201,9 +203,11 @@ impl Broad {
 
     /// Finds the moving proxies that are due, and gives them new fat boxes.
     fn sweep(&mut self, shift: [i64; 2], mut swept: impl FnMut(u32) -> Aabb) {
-        for slot in 0..self.states.len() {
+        let mut slot = 0;
+        while slot < self.states.len() {
             let mut state = self.states[slot];
             if state & KIND != MOVING {
+                slot = slot.saturating_add(self.fixed_from(slot));
                 continue;
             }
             let proxy = slot as u32;
@@ -221,7 +225,16 @@ impl Broad {
                 self.due.push(proxy);
                 self.fatten(slot, shift, &world, &local);
             }
+            slot = slot.saturating_add(1);
         }
+    }
+
+    /// How many proxies from one on that does not move do not, at least; by many at a time where few do.
+    #[inline]
+    fn fixed_from(&self, slot: usize) -> usize {
+        let moves = |states: &[u8]| states.iter().fold(false, |any, state| any | (state & KIND == MOVING));
+        let blocks = self.states[slot..].chunks(STRIDE).take_while(|states| !moves(states));
+        blocks.fold(0usize, |skipped, states| skipped.saturating_add(states.len())).max(1)
     }
 
     /// New fat boxes, from how the proxy's box moved and grew since the last ones.

@@ -23,6 +23,7 @@ const SCENES: &[(&str, &str)] = &[
     ("tumbler", include_str!("../../replays/tumbler.json")),
     ("bouncers", include_str!("../../replays/bouncers.json")),
     ("pile300", include_str!("../../replays/pile300.json")),
+    ("sleep", include_str!("../../replays/sleep.json")),
 ];
 
 fn parse(name: &str, text: &str) -> Result<Scene, Failure> {

@@ -13,7 +13,7 @@ use tamias2d::{StatusEntry, World};
 ///
 /// One row per body and tick, from tick 0 on: tick, time in s, body (its name, or its index), x and y in m, angle in
 /// radians in [0, 2π), turns (the unwrapped angle), vx and vy in m/s, omega in rad/s. x, y, turns, vx, vy and omega
-/// are printed exactly, with all their digits; time and angle to 15 decimals.
+/// are printed exactly, with all their digits; time and angle to 15 decimals. With sleeping there is a last column, asleep.
 ///
 /// With --events instead one row per event, in the order of the engine: tick (after its step), event (contact_begin,
 /// contact_end, sensor_begin, sensor_end), and the two colliders, each as its body and its index in that body's list,
@@ -37,10 +37,11 @@ A scene:
 Only name, tick_rate and bodies are needed; other keys are refused. SI units, angles in radians.
   scene      name, tick_rate, bodies, substeps, integrator (forest_ruth, symplectic_euler),
              gravity, unit_shift (contacts are solved in units of 2^k m: about 6 for pixels),
+             sleeping (true, or { speed, time }: what is slower for so long falls asleep),
              attractors, commands, ticks (length of a recording), about
   body       name, kind (dynamic, kinematic, static), position, angle (0 to 2π), velocity,
              angular_velocity, force, torque, mass, inertia, center (of mass), fixed_rotation,
-             linear_damping, angular_damping, mu, user_data, colliders
+             linear_damping, angular_damping, mu, user_data, allow_sleep, colliders
   collider   one of box ([width, height]), polygon (3 to 8 vertices, convex) and circle (radius);
              offset, angle, density, restitution (0 to 1), friction, filter (category, mask),
              sensor (true: it only reports overlaps)
@@ -53,7 +54,8 @@ Commands, before the step of their tick; \"body\" and \"attractor\" are a name o
   apply_torque, apply_impulse (impulse, point), apply_angular_impulse (impulse),
   create_attractor (an attractor), set_attractor, destroy_attractor, set_gravity,
   set_surface (collider, restitution, friction) and set_filter (collider, category, mask), where
-  collider is an index in the body's list, the first if left out; clear_status, input (text)")]
+  collider is an index in the body's list, the first if left out; set_allow_sleep (allow),
+  wake, put_to_sleep, clear_status, input (text)")]
 pub(crate) struct Run {
     /// The scene, a JSON file; - is standard input. See `tamias2d scenes` for examples
     scene: String,
@@ -105,7 +107,7 @@ impl Run {
         let columns = match (self.events, self.collisions) {
             (true, _) => Columns::Events,
             (_, true) => Columns::Collisions,
-            _ => Columns::Bodies,
+            _ => Columns::Bodies { sleeping: stage.world().config().sleeping.is_some() },
         };
         let mut table = Table::new(out, self.format, columns, stage.world().config().tick_rate)?;
         let bar = progress(self.ticks, "ticks");

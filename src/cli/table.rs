@@ -15,8 +15,12 @@ pub(crate) enum Format {
 }
 
 /// What the rows are.
+#[derive(Clone, Copy)]
 pub(crate) enum Columns {
-    Bodies,
+    /// With whether they sleep, in a world with sleeping.
+    Bodies {
+        sleeping: bool,
+    },
     Events,
     Collisions,
 }
@@ -27,19 +31,24 @@ pub(crate) struct Table<W> {
     format: Format,
     rows: u64,
     tick_rate: u32,
+    sleeping: bool,
 }
 
 impl<W: Write> Table<W> {
     pub(crate) fn new(mut out: W, format: Format, columns: Columns, tick_rate: u32) -> io::Result<Self> {
         match (format, columns) {
-            (Format::Csv, Columns::Bodies) => writeln!(out, "tick,time,body,x,y,angle,turns,vx,vy,omega")?,
+            (Format::Csv, Columns::Bodies { sleeping }) => {
+                let asleep = if sleeping { ",asleep" } else { "" };
+                writeln!(out, "tick,time,body,x,y,angle,turns,vx,vy,omega{asleep}")?;
+            }
             (Format::Csv, Columns::Events) => writeln!(out, "tick,event,body_a,collider_a,body_b,collider_b")?,
             (Format::Csv, Columns::Collisions) => {
                 writeln!(out, "tick,time,order,body_a,collider_a,body_b,collider_b,x,y,nx,ny,jx,jy")?;
             }
             (Format::Json, _) => write!(out, "[")?,
         }
-        Ok(Table { out, format, rows: 0, tick_rate })
+        let sleeping = matches!(columns, Columns::Bodies { sleeping: true });
+        Ok(Table { out, format, rows: 0, tick_rate, sleeping })
     }
 
     pub(crate) fn row(&mut self, tick: u64, label: &str, body: &Body<'_>) -> io::Result<()> {
@@ -50,15 +59,17 @@ impl<W: Write> Table<W> {
         match self.format {
             Format::Csv => {
                 let label = csv_field(label);
-                writeln!(self.out, "{tick},{time},{label},{x},{y},{angle},{turns},{vx},{vy},{omega}")?;
+                let asleep = if self.sleeping { format!(",{}", !body.is_awake()) } else { String::new() };
+                writeln!(self.out, "{tick},{time},{label},{x},{y},{angle},{turns},{vx},{vy},{omega}{asleep}")?;
             }
             Format::Json => {
                 let comma = if self.rows == 0 { "" } else { "," };
                 let label = super::quoted(label);
+                let asleep = if self.sleeping { format!(",\"asleep\":{}", !body.is_awake()) } else { String::new() };
                 write!(
                     self.out,
                     "{comma}\n{{\"tick\":{tick},\"time\":{time},\"body\":{label},\"x\":{x},\"y\":{y},\"angle\":{angle},\
-                     \"turns\":{turns},\"vx\":{vx},\"vy\":{vy},\"omega\":{omega}}}"
+                     \"turns\":{turns},\"vx\":{vx},\"vy\":{vy},\"omega\":{omega}{asleep}}}"
                 )?;
             }
         }

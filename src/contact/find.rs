@@ -4,9 +4,10 @@
 //! order, and every pair is looked at exactly here.
 
 use super::event::{Event, EventKind};
+use super::island::rests;
 use super::row::{Contact, Contacts};
 use super::ways::{along, around, common_way, rim_speed, sweep, way};
-use crate::body::{Bodies, BodyKind, Colliders};
+use crate::body::{Bodies, Colliders};
 use crate::broad::Broad;
 use crate::geom::{Aabb, Rot, Vec2};
 use crate::motion::Drive;
@@ -126,7 +127,7 @@ impl Touch {
         }
         self.proxies[slot] = Proxy { body, reach };
         let at = body as usize;
-        if bodies.cold.value(at).kind == BodyKind::Static {
+        if bodies.is_still(at) {
             let placed = Placed::new(colliders.outline(slot), Rot::new(bodies.angle.get(at)));
             self.broad.set_fixed(slot as u32, around(bodies.position(at), placed.min, placed.max));
         } else {
@@ -170,11 +171,15 @@ impl Touch {
         self.broad.update(shift, swept, |a, b| wanted(bodies, colliders, a as usize, b as usize));
 
         self.now = self.now.wrapping_add(1);
+        let any_asleep = bodies.rest.any_asleep();
         let mut old = 0;
         for at in 0..self.broad.candidates().len() {
             let (a, b) = self.broad.candidates()[at];
             let body = [self.proxies[a as usize].body, self.proxies[b as usize].body];
-            let still = body.map(|slot| bodies.cold.value(slot as usize).kind == BodyKind::Static);
+            if any_asleep && rests(bodies, colliders, [a, b], body) {
+                continue;
+            }
+            let still = body.map(|slot| bodies.is_still(slot as usize));
             // First by what is known of a moving one without turning its outline.
             if still[0] {
                 self.place(a as usize, true, bodies, colliders, margins);
@@ -377,7 +382,7 @@ impl Touch {
                 (true, false) => end(before, events),
                 _ => {}
             }
-            if contact.touching || contact.normal != [0; 2] || contact.tangent != 0 {
+            if contact.lasts() {
                 next.push(&contact);
             }
         }

@@ -2,9 +2,12 @@
 
 mod event;
 mod find;
+mod island;
 mod row;
+mod wake;
 mod ways;
 
 pub use event::{Collision, Event, EventKind, Pace};
 pub(crate) use find::{Margins, NEW, Pair, Touch};
+pub(crate) use island::Resting;
 pub(crate) use row::{Contact, Contacts};

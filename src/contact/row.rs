@@ -53,6 +53,11 @@ impl Contact {
         }
     }
 
+    /// Whether it is kept: what neither touches nor pushes is forgotten.
+    pub(crate) fn lasts(&self) -> bool {
+        self.touching || self.normal != [0; 2] || self.tangent != 0
+    }
+
     /// What `is` ordered by.
     fn key(&self) -> (u32, u32) {
         (self.a.index, self.b.index)

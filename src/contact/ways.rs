@@ -45,8 +45,8 @@ pub(super) fn along(at: Vec2<Length>, v: [i64; 2], gain: [i64; 2], min: [i64; 2]
 /// About how far the bodies go together in this tick: a hint for the broad phase.
 pub(super) fn common_way(bodies: &Bodies, tick: i64) -> [i64; 2] {
     let mean = |column: &[i64]| {
-        let (sum, moving) = column
-            .iter()
+        let awake = bodies.rest.all_runs().flat_map(|run| &column[run]);
+        let (sum, moving) = awake
             .filter(|&&v| v != 0)
             .fold((0i128, 0i128), |(sum, n), &v| (sum.saturating_add(v.into()), n.saturating_add(1)));
         sum.checked_div(moving).unwrap_or(0) as i64

@@ -5,7 +5,7 @@ use super::damping::Decay;
 use super::gravity::Source;
 use super::integrate::{Integrator, Stage, stages};
 use super::span::Span;
-use crate::body::{Attractor, Bodies, BodyData};
+use crate::body::{Attractor, Bodies, BodyData, BodyKind};
 use crate::geom::Vec2;
 use crate::num::{Acceleration, Damping, Force, Mu, Torque, clamp_i64, mul, mul_div};
 use crate::store::{Arena, clone_fields, record};
@@ -157,6 +157,12 @@ impl Drive {
             (false, false) => {}
         }
         was_empty != self.sources.is_empty()
+    }
+
+    /// Whether a body that may move pulls others.
+    pub(crate) fn is_pulled_by_movers(&self, bodies: &Bodies) -> bool {
+        let carriers = self.sources.iter().filter_map(|source| source.body());
+        carriers.into_iter().any(|slot| bodies.cold.value(slot).kind != BodyKind::Static)
     }
 
     /// Moves the sources that bodies carry to where these are.

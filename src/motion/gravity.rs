@@ -55,6 +55,14 @@ impl Source {
         self.carrier
     }
 
+    /// The slot of the body that carries it, if one does.
+    pub(crate) fn body(&self) -> Option<usize> {
+        match self.carrier {
+            Carrier::Body(slot) => Some(slot as usize),
+            Carrier::Attractor(_) => None,
+        }
+    }
+
     /// Whether μ is not 0.
     pub(crate) fn pulls(&self) -> bool {
         self.mantissa != 0

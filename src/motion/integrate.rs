@@ -155,8 +155,10 @@ pub(crate) fn integrate(bodies: &mut Bodies, drive: &mut Drive, faults: &mut Vec
                     attract(bodies, drive, span, faults);
                 }
                 Stage::Drift(span) => {
-                    let all = 0..bodies.x.len();
-                    drift(bodies, drive, all, span.line, span.turn, faults);
+                    for at in 0..bodies.rest.runs() {
+                        let run = bodies.rest.run(at);
+                        drift(bodies, drive, run, span.line, span.turn, faults);
+                    }
                 }
                 Stage::Decay => decay(bodies, drive),
             }
@@ -168,22 +170,26 @@ pub(crate) fn integrate(bodies: &mut Bodies, drive: &mut Drive, faults: &mut Vec
 /// their own.
 fn glide(bodies: &mut Bodies, drive: &Drive, faults: &mut Vec<Fault>) {
     let Span { line, turn } = drive.glide_span();
-    let mut start = 0;
-    for damped in &drive.damped {
-        let slot = damped.slot as usize;
-        let next = slot.saturating_add(1);
-        drift(bodies, drive, start..slot, line, turn, faults);
-        drift(bodies, drive, slot..next, damped.line_span, damped.turn_span, faults);
-        start = next;
+    // Of what sleeps nothing is damped.
+    let mut damped = drive.damped.iter().peekable();
+    for at in 0..bodies.rest.runs() {
+        let Range { mut start, end } = bodies.rest.run(at);
+        while let Some(damped) = damped.next_if(|damped| (damped.slot as usize) < end) {
+            let slot = damped.slot as usize;
+            let next = slot.saturating_add(1);
+            drift(bodies, drive, start..slot, line, turn, faults);
+            drift(bodies, drive, slot..next, damped.line_span, damped.turn_span, faults);
+            start = next;
+        }
+        drift(bodies, drive, start..end, line, turn, faults);
     }
-    drift(bodies, drive, start..bodies.x.len(), line, turn, faults);
     decay(bodies, drive);
     kick(bodies, drive, faults, |change| change);
 }
 
 /// The bodies of `run`, whose velocities act for `line` (seconds) and `turn` (seconds/2π), 63 fraction bits each.
 fn drift(bodies: &mut Bodies, drive: &Drive, run: Range<usize>, line: i64, turn: i64, faults: &mut Vec<Fault>) {
-    let Bodies { cold: _, x, y, vx, vy, angle, omega } = bodies;
+    let Bodies { cold: _, rest: _, x, y, vx, vy, angle, omega } = bodies;
     let [bow_x, bow_y, bow_turn] = &drive.bow;
     // v with 48 fraction bits times T with 63, to the 32 of a position and the 48 of an angle.
     const TO_LENGTH: u32 = 48 + 63 - 32;
@@ -240,15 +246,17 @@ fn decay(bodies: &mut Bodies, drive: &Drive) {
 /// Velocities by what `change` makes of the prepared kicks.
 #[inline]
 fn kick(bodies: &mut Bodies, drive: &Drive, faults: &mut Vec<Fault>, change: impl Fn(i64) -> i64) {
-    let Bodies { cold: _, x: _, y: _, vx, vy, angle: _, omega } = bodies;
+    let Bodies { cold: _, rest, x: _, y: _, vx, vy, angle: _, omega } = bodies;
     let [kick_x, kick_y, kick_turn] = &drive.kick;
     for (velocity, kicks, bound) in [
         (vx.bits_mut(), kick_x, Bound::Velocity),
         (vy.bits_mut(), kick_y, Bound::Velocity),
         (omega.bits_mut(), kick_turn, Bound::AngularVelocity),
     ] {
-        for (slot, (v, &by)) in velocity.iter_mut().zip(kicks).enumerate() {
-            add(v, change(by), slot, bound, faults);
+        for run in rest.all_runs() {
+            for (slot, (v, &by)) in velocity[run.clone()].iter_mut().zip(&kicks[run.clone()]).enumerate() {
+                add(v, change(by), run.start.saturating_add(slot), bound, faults);
+            }
         }
     }
 }
@@ -259,9 +267,9 @@ fn attract(bodies: &mut Bodies, drive: &mut Drive, span: Span, faults: &mut Vec<
         return;
     }
     drive.follow(bodies);
-    let Bodies { cold, x, y, vx, vy, angle: _, omega: _ } = bodies;
+    let Bodies { cold, rest, x, y, vx, vy, angle: _, omega: _ } = bodies;
     let (x, y, vx, vy) = (x.bits(), y.bits(), vx.bits_mut(), vy.bits_mut());
-    for (slot, _) in cold.iter().filter(|(_, data)| data.is_dynamic()) {
+    for slot in rest.all_runs().flatten().filter(|&slot| cold.value(slot).is_dynamic()) {
         let wide = gravity::pull(&drive.sources, slot, x[slot], y[slot]);
         let pull = wide.map(clamp_i64);
         if pull.map(i128::from) != wide {

@@ -248,7 +248,7 @@ quantities! {
     Angle: FixedI64<U48>, i64, 48, "angle", "turns", "±(32768 − 2⁻⁴⁸)", -i64::MAX, i64::MAX;
     /// An angle in radians, for the edges of the interface only: `I16F48`.
     Radians: FixedI64<U48>, i64, 48, "angle", "rad", "±(32768 − 2⁻⁴⁸)", -i64::MAX, i64::MAX;
-    /// A time in seconds: `I16F48`; an output.
+    /// A time in seconds: `I16F48`.
     Time: FixedI64<U48>, i64, 48, "time", "s", "±(32768 − 2⁻⁴⁸)", -i64::MAX, i64::MAX;
     /// A mass in kg: `I64F64`, 1e-6 … 2.1e9. With 32 fraction bits a body of 10 g would accelerate wrongly by 1e-8.
     Mass: FixedI128<U64>, i128, 64, "mass", "kg", "0.000001 … 2100000000", 18_446_744_073_710, 2_100_000_000 * UNIT_64;

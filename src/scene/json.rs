@@ -3,14 +3,15 @@
 use super::collider::ColliderJson;
 use super::number::{Number, Pair};
 use super::object::Object;
-use crate::body::{Attractor, BodyDef, BodyKind};
+use crate::body::{Attractor, BodyDef, BodyKind, Sleeping};
 use crate::motion::Integrator;
 use crate::num::{
     Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Force, Friction, Impulse, Inertia, Length, Mass, Mu,
-    Radians, RangeError, Restitution, Torque, Velocity,
+    Radians, RangeError, Restitution, Time, Torque, Velocity,
 };
 use crate::world::WorldDef;
 use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
 
 #[derive(Deserialize)]
@@ -23,6 +24,8 @@ pub(super) struct SceneJson {
     pub(super) substeps: u32,
     #[serde(default)]
     pub(super) unit_shift: u32,
+    #[serde(default, deserialize_with = "sleeping")]
+    pub(super) sleeping: Option<Sleeping>,
     #[serde(default)]
     pub(super) integrator: IntegratorJson,
     #[serde(default)]
@@ -43,6 +46,41 @@ fn substeps() -> u32 {
 
 fn six_hundred() -> u64 {
     600
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SleepingJson {
+    #[serde(default, deserialize_with = "some")]
+    speed: Option<Number<Velocity>>,
+    #[serde(default, deserialize_with = "some")]
+    time: Option<Number<Time>>,
+}
+
+/// Whether bodies sleep, or from when on: an object.
+fn sleeping<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Sleeping>, D::Error> {
+    struct Switch;
+
+    impl<'de> Visitor<'de> for Switch {
+        type Value = Option<Sleeping>;
+
+        fn expecting(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+            f.write_str("true, false or an object")
+        }
+
+        fn visit_bool<E: Error>(self, on: bool) -> Result<Self::Value, E> {
+            Ok(on.then(Sleeping::default))
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+            let keys = SleepingJson::deserialize(MapAccessDeserializer::new(map))?;
+            let Sleeping { speed, time } = Sleeping::default();
+            let (speed, time) = (keys.speed.map_or(speed, |speed| speed.0), keys.time.map_or(time, |time| time.0));
+            Ok(Some(Sleeping { speed, time }))
+        }
+    }
+
+    deserializer.deserialize_any(Switch)
 }
 
 /// Declares a word of the file that stands for one of some values: text only, by these spellings.
@@ -125,6 +163,8 @@ pub(super) struct BodyJson {
     mu: Number<Mu>,
     #[serde(default)]
     user_data: u64,
+    #[serde(default = "yes")]
+    allow_sleep: bool,
     #[serde(default)]
     colliders: Vec<ColliderJson>,
 }
@@ -147,9 +187,14 @@ impl BodyJson {
             angular_damping: self.angular_damping.0,
             mu: self.mu.0,
             user_data: self.user_data,
+            allow_sleep: self.allow_sleep,
             colliders: self.colliders.iter().map(|collider| collider.0.clone()).collect(),
         }
     }
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// An orientation φ given in radians in [0, 2π].
@@ -294,6 +339,9 @@ actions! {
         category: u32,
         mask: u32,
     },
+    "set_allow_sleep" => SetAllowSleep { body: Reference, allow: bool },
+    "wake" => Wake { body: Reference },
+    "put_to_sleep" => PutToSleep { body: Reference },
     "clear_status" => ClearStatus {},
     "input" => Input { text: String },
 }

@@ -23,6 +23,7 @@
 //! | `integrator` | `"forest_ruth"` or `"symplectic_euler"` | `"forest_ruth"` |
 //! | `gravity` | [x, y] in m/s² | [0, 0] |
 //! | `unit_shift` | k, 0 … 10: contacts are solved in units of 2^k m, for scenes that count in pixels | 0 |
+//! | `sleeping` | whether what rests falls asleep: `true`, `false`, or `{ "speed", "time" }` in m/s and s, each as [`Sleeping`](crate::Sleeping) if left out | false |
 //! | `attractors` | a list of `{ "name", "position", "mu" }`; `name` may be left out | none |
 //! | `commands` | a list of `{ "tick", "do" }` | none |
 //! | `ticks` | how long a recording of the scene is, if nobody says otherwise | 600 |
@@ -45,6 +46,7 @@
 //! | `linear_damping`, `angular_damping` | rates of decay in 1/s; 0 unless the body is dynamic | 0 |
 //! | `mu` | μ = G·M in m³/s² by which it pulls other bodies | 0 |
 //! | `user_data` | a whole number | 0 |
+//! | `allow_sleep` | whether it may fall asleep | true |
 //! | `colliders` | a list of what of it collides | none |
 //!
 //! # Keys of a collider
@@ -74,7 +76,7 @@
 //! `set_fixed_rotation`, `set_damping`, `set_mu`, `set_user_data`, `apply_force`, `apply_torque`, `apply_impulse`
 //! (`point` [x, y] in the world; the centre of mass if left out), `apply_angular_impulse`, `create_attractor`,
 //! `set_attractor`, `destroy_attractor`, `set_gravity`, `set_surface` (`restitution`, `friction`), `set_filter`
-//! (`category`, `mask`), `clear_status`, `input` (`text`). A body is referred to by its name, or by its index in order of
+//! (`category`, `mask`), `set_allow_sleep` (`allow`), `wake`, `put_to_sleep`, `clear_status`, `input` (`text`). A body is referred to by its name, or by its index in order of
 //! creation; attractors likewise. `set_surface` and `set_filter` change the body's collider with the index `collider` in
 //! its list, from 0; the first if that is left out.
 

@@ -37,6 +37,7 @@ impl Scene {
             gravity: file.gravity.0,
             integrator: file.integrator.0,
             unit_shift: file.unit_shift,
+            sleeping: file.sleeping,
         };
         def.check().map_err(|error| SceneError::new("", error))?;
         let scene = Scene { file, def };
@@ -312,6 +313,11 @@ impl<'s> Script<'s> {
                 let filter = Filter { category: *category, mask: *mask };
                 Command::SetFilter { collider: collider(body, *index)?, filter }
             }
+            Action::SetAllowSleep(json::SetAllowSleep { body: b, allow }) => {
+                Command::SetAllowSleep { body: body(b)?, allow: *allow }
+            }
+            Action::Wake(json::Wake { body: b }) => Command::Wake { body: body(b)? },
+            Action::PutToSleep(json::PutToSleep { body: b }) => Command::PutToSleep { body: body(b)? },
             Action::ClearStatus(json::ClearStatus {}) => Command::ClearStatus,
             Action::Input(json::Input { text }) => Command::Input { bytes: text.clone().into_bytes() },
         })

@@ -134,7 +134,7 @@ pub(crate) struct Past {
 
 impl Past {
     pub(crate) fn take(&mut self, bodies: &Bodies) {
-        let Bodies { cold: _, x, y, vx, vy, angle, omega } = bodies;
+        let Bodies { cold: _, rest: _, x, y, vx, vy, angle, omega } = bodies;
         let now = [x.bits(), y.bits(), angle.bits(), vx.bits(), vy.bits(), omega.bits()];
         for (column, now) in self.columns.iter_mut().zip(now) {
             column.clear();
@@ -197,7 +197,7 @@ impl Flights {
     pub(crate) fn store(&self, bodies: &mut Bodies, movers: &Movers, scales: &Scales, faults: &mut Vec<Fault>) {
         for flight in self.list.iter().filter(|flight| flight.strikes > 0) {
             let slot = flight.slot as usize;
-            if movers.keeps(flight.place) || !bodies.cold.value(slot).is_dynamic() {
+            if movers.keeps(flight.place) || !bodies.cold.value(slot).is_dynamic() || bodies.rest.is_asleep(slot) {
                 continue;
             }
             let State { x, angle: _, v, omega } = flight.at(TICK, scales);

@@ -327,7 +327,7 @@ impl Movers {
         for ((mover, course), before) in self.lanes.iter().zip(&self.courses).zip(before).skip(1) {
             let slot = course.slot as usize;
             let mobility = &mobilities[slot];
-            if !(course.hit || course.slowed) || !mobility.moves() {
+            if !(course.hit || course.slowed) || !mobility.moves() || bodies.rest.is_asleep(slot) {
                 continue;
             }
             if course.slowed {
@@ -365,7 +365,7 @@ impl Movers {
 
     /// Position, angle and velocities of each, to go on from.
     pub(crate) fn remember(&self, bodies: &Bodies, before: &mut Vec<[i64; 6]>) {
-        let Bodies { cold: _, x, y, vx, vy, angle, omega } = bodies;
+        let Bodies { cold: _, rest: _, x, y, vx, vy, angle, omega } = bodies;
         let columns = [x.bits(), y.bits(), angle.bits(), vx.bits(), vy.bits(), omega.bits()];
         before.clear();
         before.push([0; 6]);

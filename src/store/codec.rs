@@ -50,6 +50,16 @@ pub(crate) fn hash_words<const N: usize>(rows: &[[u64; N]]) -> u64 {
     }
 }
 
+/// XXH3-64 of the little-endian bytes of numbers.
+pub(crate) fn hash_numbers(numbers: &[u32]) -> u64 {
+    if cfg!(target_endian = "little") {
+        hash_bytes(bytemuck::cast_slice(numbers))
+    } else {
+        let swapped: Vec<u32> = numbers.iter().map(|number| number.to_le()).collect();
+        hash_bytes(bytemuck::cast_slice(&swapped))
+    }
+}
+
 /// XXH3-64 of what is written, without allocating: exactly that for up to 256 bytes; longer input is hashed in
 /// blocks of 256, each seeded with the hash of those before.
 pub(crate) struct Hasher {

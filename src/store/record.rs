@@ -117,7 +117,7 @@ macro_rules! quantities {
     )*};
 }
 
-quantities! { Acceleration Angle AngularVelocity Damping Density Force Friction Restitution Inertia Length Mass Mu Torque Velocity Impulse AngularImpulse }
+quantities! { Acceleration Angle AngularVelocity Damping Density Force Friction Restitution Inertia Length Mass Mu Torque Time Velocity Impulse AngularImpulse }
 
 impl<Q: Record> Record for Vec2<Q> {
     const LEAST: usize = Q::LEAST.saturating_mul(2);

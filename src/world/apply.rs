@@ -1,7 +1,6 @@
 //! Carrying commands out: everything is checked before anything changes.
 
 use super::command::{Command, CommandError, INPUT_MAX, Reply};
-use super::commands::Commands;
 use crate::World;
 use crate::body::{Attractor, BodyData, BodyDef, BodyError, BodyKind, Collider, center_at, origin_of};
 use crate::geom::Vec2;
@@ -12,8 +11,9 @@ use crate::num::{
 };
 use crate::store::{Arena, AttractorId, BodyId, ColliderId};
 
-impl Commands for World {
-    fn apply(&mut self, command: Command) -> Result<Reply, CommandError> {
+impl World {
+    /// Carries a command out, but for what it wakes.
+    pub(super) fn carry_out(&mut self, command: Command) -> Result<Reply, CommandError> {
         match command {
             Command::CreateBody { def } => return self.add_body(&def).map(Reply::Body),
             Command::DestroyBody { body } => self.remove_body(body)?,
@@ -105,6 +105,9 @@ impl Commands for World {
                 self.colliders.rows.update(slot, |row| row.filter = filter);
                 self.touch.set(slot, &self.bodies, &self.colliders);
             }
+            Command::SetAllowSleep { body, allow } => self.change(body, |data| data.allow_sleep = allow)?,
+            Command::Wake { body } => drop(self.slot(body)?),
+            Command::PutToSleep { body } => self.lull(body)?,
             Command::ClearStatus => self.status.clear(),
             Command::Input { bytes } => {
                 if bytes.len() > INPUT_MAX {
@@ -305,7 +308,7 @@ impl World {
     }
 
     /// Forgets the forces of this tick on a body.
-    fn drop_push(&mut self, slot: usize) {
+    pub(super) fn drop_push(&mut self, slot: usize) {
         if self.drive.push_of(slot, &self.pushes).is_some() {
             self.pushes.retain(|push| push.slot as usize != slot);
             self.drive.index_pushes(&self.pushes);

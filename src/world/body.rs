@@ -44,6 +44,7 @@ impl Body<'_> {
             angular_damping: data.angular_damping,
             mu: data.mu,
             user_data: data.user_data,
+            allow_sleep: data.allow_sleep,
             colliders: self.colliders().map(|collider| collider.def()).collect(),
         }
     }
@@ -109,6 +110,11 @@ impl Body<'_> {
     /// The game's own.
     pub fn user_data(&self) -> u64 {
         self.data().user_data
+    }
+
+    /// Whether steps move it: not while it sleeps. Static and kinematic bodies are always awake.
+    pub fn is_awake(&self) -> bool {
+        !self.world.bodies.rest.is_asleep(self.slot)
     }
 
     /// ½·m·‖v‖² + ½·I·ω² (DD:kEnergy). Rounding: once per term. Overflow: saturates.

@@ -1,6 +1,7 @@
 //! Every invariant of a world, in words and in code.
 
 use crate::World;
+use crate::body::BodyData;
 use crate::motion::Drive;
 use crate::num::Quantity;
 use crate::solver::{Mobility, Scales};
@@ -12,19 +13,22 @@ impl World {
     ///
     /// Errors: the first broken invariant, in words.
     pub fn check(&self) -> Result<(), String> {
-        let World { config, bodies, colliders, attractors, pushes, drive, touch: _, solver, faults, .. } = self;
+        let World { config, bodies, colliders, attractors, pushes, contacts, resting, drive, solver, faults, .. } =
+            self;
         self.check_lists()?;
         bodies.check().map_err(|reason| format!("the table of bodies {reason}"))?;
         colliders.check().map_err(|reason| format!("the table of colliders {reason}"))?;
         attractors.check().map_err(|reason| format!("the table of attractors {reason}"))?;
+        resting.check(contacts, bodies, colliders).map_err(|reason| format!("the list of what sleeps {reason}"))?;
         if !faults.is_empty() {
             return Err("faults of the last step were left over".into());
         }
-        let mut fresh = Drive::default();
+        let (mut fresh, still) = (Drive::default(), BodyData::default());
         fresh.prepare(config.integrator, config.tick_rate, config.substeps, bodies, attractors);
         fresh.index_pushes(pushes);
         for slot in 0..bodies.cold.len() {
-            fresh.set(slot, bodies.cold.value(slot), config.gravity, None);
+            let driven = if bodies.rest.is_asleep(slot) { &still } else { bodies.cold.value(slot) };
+            fresh.set(slot, driven, config.gravity, None);
         }
         let mobilities: Vec<_> = (0..bodies.cold.len()).map(|slot| Mobility::new(bodies.cold.value(slot))).collect();
         let scales = Scales::new(config.tick_rate, config.substeps, config.unit_shift);
@@ -45,6 +49,14 @@ impl World {
     /// the lists that refer to bodies. The first broken invariant, in words.
     pub(crate) fn check_lists(&self) -> Result<(), String> {
         let World { config, bodies, colliders, attractors, pushes, contacts, status, .. } = self;
+        config.check().map_err(|error| error.to_string())?;
+        let limits = config.sleeping.map(|sleeping| sleeping.limits(config.tick_rate, config.unit_shift));
+        if bodies.rest.len() != limits.map_or(0, |_| bodies.cold.len()) {
+            return Err("the table of bodies says who sleeps where nobody can, or does not".into());
+        }
+        if (0..bodies.rest.len()).any(|slot| bodies.rest.quiet(slot) > limits.map_or(0, |(_, ticks)| ticks)) {
+            return Err("a body has been quiet for longer than is counted".into());
+        }
         contacts.check().map_err(|reason| format!("the list of contacts {reason}"))?;
         // Each collider belongs to exactly one body's list, and to the body that it says.
         let mut listed = 0u32;
@@ -72,7 +84,6 @@ impl World {
         if listed != colliders.rows.live() {
             return Err("a collider belongs to no body".into());
         }
-        config.check().map_err(|error| error.to_string())?;
         status.check().map_err(|reason| format!("the table of status entries {reason}"))?;
         for (_, attractor) in attractors.iter() {
             attractor.checked().map_err(|error| error.to_string())?;
@@ -86,6 +97,9 @@ impl World {
             let slot = push.slot as usize;
             push.force.checked().map_err(|error| error.to_string())?;
             push.torque.checked().map_err(|error| error.to_string())?;
+            if bodies.rest.is_asleep(slot) {
+                return Err(format!("a force of this tick acts on slot {slot}, which sleeps"));
+            }
             if bodies.id(slot).is_none() || !bodies.cold.value(slot).is_dynamic() {
                 return Err(format!("a force of this tick acts on slot {slot}, which holds no dynamic body"));
             }

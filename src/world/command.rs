@@ -189,6 +189,25 @@ pub enum Command {
         /// What it is and meets.
         filter: Filter,
     },
+    /// Lets a body fall asleep, or never again: then it wakes.
+    SetAllowSleep {
+        /// Which.
+        body: BodyId,
+        /// Whether it may.
+        allow: bool,
+    },
+    /// Wakes a body with all that hangs together with it, or what sleeps on a static or kinematic one. What is awake begins
+    /// to count anew.
+    Wake {
+        /// Which.
+        body: BodyId,
+    },
+    /// Puts a body and all that hangs together with it to sleep, however fast it is. It stays where it is, in the air as
+    /// well, until something wakes it.
+    PutToSleep {
+        /// Which; it is dynamic.
+        body: BodyId,
+    },
     /// Forgets what went out of range.
     ClearStatus,
     /// Attaches the game's own bytes to this tick. The world does not look at them; replays carry them.
@@ -225,6 +244,9 @@ record_enum!(Command {
     23 => Input { bytes },
     24 => SetSurface { collider, restitution, friction },
     25 => SetFilter { collider, filter },
+    26 => SetAllowSleep { body, allow },
+    27 => Wake { body },
+    28 => PutToSleep { body },
 });
 
 /// What an accepted command answers.
@@ -257,6 +279,10 @@ pub enum CommandError {
         /// The most there can be.
         limit: u32,
     },
+    /// The world has no sleeping.
+    NoSleeping,
+    /// What is to be put to sleep hangs together with a body that must not sleep.
+    MustNotSleep(BodyId),
     /// Input of more than [`INPUT_MAX`] bytes.
     InputTooLong {
         /// Its length in bytes.
@@ -272,6 +298,8 @@ impl fmt::Display for CommandError {
             CommandError::NoSuchCollider(id) => write!(f, "there is no {id}"),
             CommandError::Body(error) => error.fmt(f),
             CommandError::Full { what, limit } => write!(f, "there are {limit} {what}, which is the most there can be"),
+            CommandError::NoSleeping => f.write_str("nothing sleeps in a world without sleeping"),
+            CommandError::MustNotSleep(id) => write!(f, "{id} must not sleep"),
             CommandError::InputTooLong { length } => write!(f, "input of {length} bytes is longer than {INPUT_MAX}"),
         }
     }

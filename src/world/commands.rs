@@ -156,6 +156,21 @@ pub trait Commands {
         self.apply(Command::SetFilter { collider, filter }).map(drop)
     }
 
+    /// Lets a body fall asleep, or never again: then it wakes.
+    fn set_allow_sleep(&mut self, body: BodyId, allow: bool) -> Result<(), CommandError> {
+        self.apply(Command::SetAllowSleep { body, allow }).map(drop)
+    }
+
+    /// Wakes a body with all that hangs together with it. See [`Command::Wake`].
+    fn wake(&mut self, body: BodyId) -> Result<(), CommandError> {
+        self.apply(Command::Wake { body }).map(drop)
+    }
+
+    /// Puts a body and all that hangs together with it to sleep. See [`Command::PutToSleep`].
+    fn put_to_sleep(&mut self, body: BodyId) -> Result<(), CommandError> {
+        self.apply(Command::PutToSleep { body }).map(drop)
+    }
+
     /// Forgets what went out of range.
     fn clear_status(&mut self) -> Result<(), CommandError> {
         self.apply(Command::ClearStatus).map(drop)

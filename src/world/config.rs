@@ -1,5 +1,6 @@
 //! A world's constants.
 
+pub use crate::body::Sleeping;
 use crate::geom::Vec2;
 pub use crate::motion::Integrator;
 use crate::num::{Acceleration, RangeError};
@@ -7,7 +8,7 @@ use crate::store::record;
 use core::fmt;
 use serde::{Deserialize, Serialize};
 
-/// A world to create. `WorldDef::default()` has 60 ticks per second, 10 substeps and no gravity.
+/// A world to create. `WorldDef::default()` has 60 ticks per second, 10 substeps, no gravity, and nothing sleeps.
 #[derive(Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct WorldDef {
@@ -23,9 +24,12 @@ pub struct WorldDef {
     /// k, 0 … 10: contacts are solved in units of 2^k m, for scenes that count in pixels. The distance at which contacts
     /// are looked for is 2 cm·2^k, overlaps of 0.1 mm·2^k are left alone, bodies in contact move at most 400·2^k m/s.
     pub unit_shift: u32,
+    /// When bodies fall asleep, `Some(Sleeping::default())` for what games use; `None`, the default: never. What sleeps costs
+    /// nothing, but what moves more slowly than its threshold is stopped: so it is for those who want it.
+    pub sleeping: Option<Sleeping>,
 }
 
-record!(WorldDef { tick_rate, substeps, gravity, integrator, unit_shift });
+record!(WorldDef { tick_rate, substeps, gravity, integrator, unit_shift, sleeping });
 
 impl Default for WorldDef {
     fn default() -> Self {
@@ -35,6 +39,7 @@ impl Default for WorldDef {
             gravity: Vec2::default(),
             integrator: Integrator::ForestRuth,
             unit_shift: 0,
+            sleeping: None,
         }
     }
 }
@@ -57,7 +62,7 @@ pub enum ConfigError {
         /// What was given.
         value: u32,
     },
-    /// A gravity component outside its range.
+    /// A gravity component, or a value of sleeping, outside its range.
     Range(RangeError),
 }
 
@@ -93,6 +98,9 @@ impl WorldDef {
             return Err(ConfigError::UnitShift { value: self.unit_shift });
         }
         self.gravity.checked()?;
+        if let Some(sleeping) = &self.sleeping {
+            sleeping.check()?;
+        }
         Ok(())
     }
 }

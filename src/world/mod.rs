@@ -8,11 +8,12 @@ mod command;
 mod commands;
 mod config;
 mod query;
+mod sleep;
 mod status;
 mod step;
 
-use crate::body::{Attractor, Bodies, Colliders};
-use crate::contact::{Collision, Contacts, Event, Touch};
+use crate::body::{Attractor, Bodies, BodyData, Colliders};
+use crate::contact::{Collision, Contacts, Event, Resting, Touch};
 use crate::motion::{Drive, Fault, Push};
 use crate::solver::{Mobility, Scales, Solver};
 use crate::store::{Arena, AttractorId, BodyId, ColliderId, record};
@@ -20,7 +21,7 @@ pub use body::Body;
 pub use collider::Collider;
 pub use command::{Command, CommandError, INPUT_MAX, Reply};
 pub use commands::Commands;
-pub use config::{ConfigError, Integrator, WorldDef};
+pub use config::{ConfigError, Integrator, Sleeping, WorldDef};
 pub use query::{ClosestPoint, RayHit};
 pub use status::{Bound, Status, StatusEntry};
 
@@ -52,6 +53,8 @@ pub struct World {
     pub(crate) pushes: Vec<Push>,
     /// What touches, and the impulses with which the next tick begins.
     pub(crate) contacts: Contacts,
+    /// The contacts of what sleeps.
+    pub(crate) resting: Resting,
     pub(crate) status: Status,
     /// Derived from the above.
     pub(crate) drive: Drive,
@@ -65,7 +68,7 @@ pub struct World {
     pub(crate) next: Contacts,
 }
 
-record!(World { config, tick, bodies, colliders, attractors, pushes, contacts, status }
+record!(World { config, tick, bodies, colliders, attractors, pushes, contacts, resting, status }
     derived { drive, touch, solver, events, faults, next });
 
 impl World {
@@ -80,6 +83,7 @@ impl World {
             attractors: Arena::default(),
             pushes: Vec::new(),
             contacts: Contacts::default(),
+            resting: Resting::default(),
             status: Status::default(),
             drive: Drive::default(),
             touch: Touch::default(),
@@ -161,6 +165,9 @@ impl World {
 
     /// Computes everything derived anew.
     pub(crate) fn rebuild(&mut self) {
+        let World { config, bodies, colliders, contacts, resting, .. } = self;
+        bodies.rest.derive(config.sleeping.is_some(), bodies.cold.len());
+        resting.derive(contacts, bodies, colliders);
         self.prepare_motion();
         self.solver.scales = Scales::new(self.config.tick_rate, self.config.substeps, self.config.unit_shift);
         self.touch.clear();
@@ -182,9 +189,10 @@ impl World {
     /// Computes the motion of one body anew, without the forces of one tick.
     pub(crate) fn refresh(&mut self, slot: usize) {
         let slots = self.bodies.cold.len();
-        let data = self.bodies.cold.value(slot);
+        let (data, still) = (self.bodies.cold.value(slot), BodyData::default());
         self.drive.grow(slots);
-        self.drive.set(slot, data, self.config.gravity, None);
+        let driven = if self.bodies.rest.is_asleep(slot) { &still } else { data };
+        self.drive.set(slot, driven, self.config.gravity, None);
         self.solver.mobilities.resize(slots, Mobility::default());
         self.solver.mobilities[slot] = Mobility::new(data);
     }

@@ -1,5 +1,6 @@
 //! One tick.
 
+use super::sleep::Sleepers;
 use crate::World;
 use crate::motion::{Fault, integrate};
 
@@ -19,6 +20,7 @@ impl World {
             attractors: _,
             pushes,
             contacts,
+            resting,
             status,
             drive,
             touch,
@@ -34,16 +36,31 @@ impl World {
             drive.set(slot, bodies.cold.value(slot), config.gravity, Some(push));
         }
 
-        touch.find(bodies, colliders, contacts, drive, solver.scales.margins);
-        solver.prepare(touch, contacts, bodies, drive);
-        integrate(bodies, drive, faults);
-        solver.run(touch, bodies, colliders, contacts, drive, faults);
+        resting.settle(contacts, bodies, colliders);
+        bodies.rest.settle();
+        for attempt in 0.. {
+            touch.find(bodies, colliders, contacts, drive, solver.scales.margins);
+            solver.prepare(touch, contacts, bodies, drive);
+            bodies.remember(&mut resting.before);
+            integrate(bodies, drive, faults);
+            solver.run(touch, bodies, colliders, contacts, drive, faults);
+            // A tick that touches what sleeps is computed anew, with that awake.
+            let mut sleepers = Sleepers { bodies, colliders, contacts, resting, touch, drive, gravity: config.gravity };
+            if !sleepers.wake_touched(solver, attempt) {
+                break;
+            }
+            faults.clear();
+        }
         touch.finish(contacts, next, colliders, events, |pair| solver.outcome(pair));
 
         for push in pushes.drain(..) {
             let slot = push.slot as usize;
             drive.push_at[slot] = u32::MAX;
             drive.set(slot, bodies.cold.value(slot), config.gravity, None);
+        }
+        if let Some(sleeping) = config.sleeping {
+            let limits = sleeping.limits(config.tick_rate, config.unit_shift);
+            Sleepers { bodies, colliders, contacts, resting, touch, drive, gravity: config.gravity }.lull_quiet(limits);
         }
         for Fault { slot, bound } in faults.drain(..) {
             if let Some(body) = bodies.id(slot) {

@@ -285,6 +285,7 @@ impl Storm {
             .expect("in range"),
             mu: tamias2d::Mu::from_f64(mu).expect("in range"),
             user_data: rng.bits(),
+            allow_sleep: rng.clone().below(8) > 0,
             colliders,
         }
     }
