@@ -6,8 +6,10 @@
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 mod color;
+mod direct;
 mod flight;
 mod impact;
+mod island;
 mod kernel;
 mod mobility;
 mod mover;
@@ -26,8 +28,10 @@ use crate::contact::{Collision, Contact, Contacts, NEW, Pair, Touch};
 use crate::motion::{Drive, Fault};
 use crate::num::{cross, dot, mul};
 use color::Colors;
+use direct::Direct;
 use flight::TICK;
 pub use impact::{Impact, ImpactError, Striker, impact};
+use island::Islands;
 use kernel::Kernel;
 pub(crate) use mobility::Mobility;
 use mover::Movers;
@@ -55,9 +59,12 @@ pub(crate) struct Solver {
     movers: Movers,
     before: Vec<[i64; 6]>,
     free: Vec<bool>,
-    /// By contact: the places of its bodies among the movers, and whether it is heavy.
+    /// By contact: the places of its bodies among the movers, whether it is heavy, and whether its load makes its island hard.
     places: Vec<[u32; 2]>,
     heavy: Vec<bool>,
+    loaded: Vec<bool>,
+    islands: Islands,
+    direct: Direct,
     /// Pairs that may strike.
     fast: Vec<u32>,
     timeline: Timeline,
@@ -90,6 +97,9 @@ impl Solver {
             free,
             places,
             heavy,
+            loaded,
+            islands,
+            direct,
             fast,
             timeline,
             colors,
@@ -100,6 +110,7 @@ impl Solver {
         timeline.clear(bodies.cold.len());
         places.clear();
         heavy.clear();
+        loaded.clear();
         fast.clear();
         for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !pair.sensor) {
             let swings = || swings(pair, bodies, drive, mobilities, scales);
@@ -130,14 +141,17 @@ impl Solver {
         for pair in touch.pairs.iter_mut().filter(|pair| pair.manifold.count > 0) {
             pair.row = places.len() as u32;
             places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
-            heavy.push(pair.old != NEW && Scales::is_heavy(contacts.get(pair.old as usize).normal));
+            let old = if pair.old == NEW { Contact::default() } else { contacts.get(pair.old as usize) };
+            heavy.push(Scales::is_heavy(old.normal));
+            loaded.push(Scales::is_hard(old.normal, old.direct));
         }
         if !fast.is_empty() {
             timeline.remember(bodies);
         }
         movers.remember(bodies, before);
         movers.yielding(mobilities, free);
-        colors.assign(places, free, heavy);
+        islands.find(places, free, loaded);
+        colors.assign(places, free, heavy, &islands.apart);
         blocks.resize_with(colors.blocks, Block::default);
         blocks.iter_mut().for_each(Block::clear);
 
@@ -153,6 +167,7 @@ impl Solver {
             joint.write(block, seat % LANES, &old, pair.friction, scales);
             block.heavy |= u8::from(heavy[row]) << (seat % LANES);
         }
+        direct.build(islands, places, &colors.seats, blocks, movers, mobilities);
     }
 
     /// Impacts and substeps, after the bodies have moved as if nothing touched them; bodies that were struck or pushed are
@@ -166,7 +181,8 @@ impl Solver {
         drive: &Drive,
         faults: &mut Vec<Fault>,
     ) {
-        let Solver { mobilities, scales, movers, before, places, fast, timeline, colors, blocks, kernel, .. } = self;
+        let Solver { mobilities, scales, movers, before, places, direct, fast, timeline, colors, blocks, kernel, .. } =
+            self;
         let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[] };
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
@@ -175,14 +191,17 @@ impl Solver {
             timeline.run([0, TICK], &stage, movers, faults);
         } else {
             movers.take_kicks(bodies, mobilities, scales);
-            for block in blocks.iter() {
+            let swept = colors.swept;
+            for block in &blocks[..swept] {
                 kernel.warm_start(block, &mut movers.lanes);
             }
+            direct.warm_start(&blocks[swept..], &mut movers.lanes);
             for substep in 1..=scales.substeps {
                 movers.begin(substep == 1);
-                for block in blocks.iter_mut() {
+                for block in &mut blocks[..swept] {
                     kernel.solve::<true>(block, u8::MAX, &mut movers.lanes, scales);
                 }
+                direct.solve::<true>(blocks, &mut movers.lanes, scales);
                 movers.drift(scales);
                 timeline.run(scales.span(substep), &Stage { blocks, ..stage }, movers, faults);
                 for pair in timeline.retired.drain(..) {
@@ -190,13 +209,14 @@ impl Solver {
                     blocks[seat / LANES].retire(seat % LANES);
                 }
                 let all = substep % RELAX == 0 || substep == scales.substeps;
-                for block in &mut *blocks {
+                for block in &mut blocks[..swept] {
                     let lanes = if all { u8::MAX } else { block.pushes | block.heavy };
                     if lanes == 0 {
                         continue;
                     }
                     kernel.solve::<false>(block, lanes, &mut movers.lanes, scales);
                 }
+                direct.solve::<false>(blocks, &mut movers.lanes, scales);
             }
             for (row, &places) in places.iter().enumerate() {
                 let seat = colors.seats[row] as usize;
@@ -233,6 +253,7 @@ impl Solver {
         }
         contact.normal = [0, 1].map(|at| block.points[at].carried(i));
         contact.tangent = block.friction.carried(i);
+        contact.direct = seat / LANES >= self.colors.swept;
         contact
     }
 }

@@ -33,6 +33,8 @@ const FIRM: i64 = 1 << 17;
 /// apart: 1 m/s, 48 fraction bits. For a box at rest on the ground that is 0.016 m/s. What is stiffer must be heavy: with
 /// 2 m/s, 100 kg on 1 kg never come to rest, and on three boxes of 1 kg they walk.
 const HEAVY: i64 = 1 << 48;
+/// The load from which on a contact makes its island hard, as [`HEAVY`]: 1/2 m/s.
+const HARD: i64 = 1 << 47;
 /// The speed with which overlaps are pushed apart at most: 1 m/s, 20 fraction bits.
 const PUSH: i64 = 1 << 20;
 /// The distance at which contacts are looked for: 2 cm, 32 fraction bits.
@@ -59,6 +61,8 @@ pub(crate) struct Scales {
     /// 1/h and bias/h in 1/s, 14 fraction bits.
     pub(crate) close_rate: i32,
     pub(crate) push_rate: i32,
+    /// 1/5 of 1/h, for rigid rows.
+    pub(crate) rigid_rate: i32,
     /// The bias of overlaps at most, Q20.
     pub(crate) push: i64,
     pub(crate) soft: [i32; 2],
@@ -89,6 +93,7 @@ impl Scales {
             coarse: div(1 << 30, rate.into()) as i32,
             close_rate: (rate << 14) as i32,
             push_rate,
+            rigid_rate: div((rate << 14).into(), 5) as i32,
             push: -PUSH,
             soft: [SOFT.mass, SOFT.impulse],
             firm,
@@ -102,6 +107,12 @@ impl Scales {
     /// Whether a contact with these impulses (Q48) of its points is heavy: it bears dozens of times its bodies' weight.
     pub(crate) fn is_heavy(normal: [i64; 2]) -> bool {
         normal[0].saturating_add(normal[1]) >= HEAVY
+    }
+
+    /// Whether a contact with these impulses (Q48) of its points makes its island hard: soft rows would yield by a millimetre.
+    /// `was`: whether its island was; half of it is enough then, or islands would go to and fro.
+    pub(crate) fn is_hard(normal: [i64; 2], was: bool) -> bool {
+        normal[0].saturating_add(normal[1]) >= if was { HARD >> 1 } else { HARD }
     }
 
     /// When the n-th substep begins and ends, from 1 on; Q32 of the tick.

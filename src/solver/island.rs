@@ -1,0 +1,132 @@
+//! Hard islands: bodies that hang together by contacts of which one bears a load that rows would yield to.
+//!
+//! Found anew each tick, from the contacts in order and what the last tick left of them, so ids have no say but for order.
+
+use crate::num::lane::next;
+
+/// What an island has at most, contacts: beyond, a direct solve costs more than it is worth.
+pub(crate) const MOST: u32 = 80;
+const NONE: u32 = u32::MAX;
+
+/// Which contacts are solved directly.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Islands {
+    /// By contact, whether it is of a hard island; empty if there is none.
+    pub(crate) apart: Vec<bool>,
+    /// By place of a body: another one of its island, nearer to the one that stands for it.
+    leader: Vec<u32>,
+    /// By place, of those that stand for an island: how many contacts it has, whether one of them is hard, and its place
+    /// among the hard islands.
+    count: Vec<u32>,
+    hard: Vec<bool>,
+    number: Vec<u32>,
+    /// By place: how many contacts lie between a body and what does not move.
+    level: Vec<u32>,
+    /// By hard island: its contacts, from what does not move on.
+    members: Vec<Vec<u32>>,
+    found: usize,
+}
+
+impl Islands {
+    /// Finds the hard islands. `places`: of each contact's bodies; `free`: by place, what impulses leave as it is; `loaded`:
+    /// by contact, whether its load alone makes its island hard.
+    pub(crate) fn find(&mut self, places: &[[u32; 2]], free: &[bool], loaded: &[bool]) {
+        self.apart.clear();
+        self.found = 0;
+        if !loaded.contains(&true) {
+            return;
+        }
+        self.lead(places, free);
+        self.count.clear();
+        self.count.resize(free.len(), 0);
+        self.hard.clear();
+        self.hard.resize(free.len(), false);
+        self.number.clear();
+        self.number.resize(free.len(), NONE);
+        for (&pair, &loaded) in places.iter().zip(loaded).filter(|&(&pair, _)| !free[moving(pair, free) as usize]) {
+            let leader = leader_of(&mut self.leader, moving(pair, free)) as usize;
+            self.count[leader] = self.count[leader].saturating_add(1);
+            self.hard[leader] |= loaded;
+        }
+        self.apart.resize(places.len(), false);
+        for (at, &pair) in places.iter().enumerate() {
+            let leader = leader_of(&mut self.leader, moving(pair, free)) as usize;
+            if free[leader] || !self.hard[leader] || self.count[leader] > MOST {
+                continue;
+            }
+            if self.number[leader] == NONE {
+                self.number[leader] = self.found as u32;
+                if self.members.len() == self.found {
+                    self.members.push(Vec::new());
+                }
+                self.members[self.found].clear();
+                self.found = next(self.found);
+            }
+            self.members[self.number[leader] as usize].push(at as u32);
+            self.apart[at] = true;
+        }
+        self.level.clear();
+        self.level.resize(free.len(), NONE);
+        for members in &mut self.members[..self.found] {
+            order(members, places, free, &mut self.level);
+        }
+    }
+
+    /// The contacts of each hard island, from what does not move on.
+    pub(crate) fn members(&self) -> &[Vec<u32>] {
+        &self.members[..self.found]
+    }
+
+    /// Joins what contacts hold together.
+    fn lead(&mut self, places: &[[u32; 2]], free: &[bool]) {
+        self.leader.clear();
+        self.leader.extend(0..free.len() as u32);
+        for &[a, b] in places.iter().filter(|pair| !pair.map(|place| free[place as usize]).contains(&true)) {
+            let (a, b) = (leader_of(&mut self.leader, a), leader_of(&mut self.leader, b));
+            self.leader[a.max(b) as usize] = a.min(b);
+        }
+    }
+}
+
+/// One of two bodies that impulses move; the other one if they move neither.
+fn moving([a, b]: [u32; 2], free: &[bool]) -> u32 {
+    if free[a as usize] { b } else { a }
+}
+
+/// The body that stands for an island; paths to it get shorter.
+fn leader_of(leader: &mut [u32], mut place: u32) -> u32 {
+    while leader[place as usize] != place {
+        let up = leader[leader[place as usize] as usize];
+        leader[place as usize] = up;
+        place = up;
+    }
+    place
+}
+
+/// Orders an island's contacts by levels, so that what touches is near each other.
+fn order(members: &mut [u32], places: &[[u32; 2]], free: &[bool], level: &mut [u32]) {
+    let grounded = |at: &u32| places[*at as usize].into_iter().any(|place| free[place as usize]);
+    if let (false, Some(&first)) = (members.iter().any(grounded), members.first()) {
+        level[places[first as usize][0] as usize] = 1;
+    }
+    // As many times as there are levels.
+    let mut changed = true;
+    while changed {
+        changed = false;
+        for &at in &*members {
+            let [a, b] = places[at as usize];
+            let of = |place: u32| if free[place as usize] { 0 } else { level[place as usize] };
+            let [over_a, over_b] = [of(a), of(b)].map(|level| level.saturating_add(1));
+            for (place, over) in [(a, over_b), (b, over_a)] {
+                if !free[place as usize] && over < level[place as usize] {
+                    level[place as usize] = over;
+                    changed = true;
+                }
+            }
+        }
+    }
+    members.sort_unstable_by_key(|&at| {
+        let levels = places[at as usize].map(|place| if free[place as usize] { 0 } else { level[place as usize] });
+        (levels[0].max(levels[1]), levels[0].min(levels[1]), at)
+    });
+}
