@@ -615,3 +615,13 @@ fn settled_piles_of_1000_overlap_less_than_1_cm() {
     }
     assert!(over.is_empty(), "{over:?}");
 }
+
+#[test]
+#[ignore]
+fn zz_debug() {
+    let mut scene = tower(&[1.0; 20], 0.01, 1);
+    for tick in 0..60 {
+        eprintln!("TICK {tick} fastest {:.3e} overlap {:.5}", fastest(&scene.0), worst_overlap(&scene.0));
+        run(&mut scene.0, 1);
+    }
+}

@@ -1,12 +1,14 @@
 //! Symmetric positive definite systems in integers: L·D·Lᵀ, each row from its first entry on (an envelope).
 //!
-//! A is scaled so that its diagonal is in 1 … 4, and a floor under every pivot bounds all else: |L_ij|·√D_j ≤ √A_ii.
+//! A is scaled so that its diagonal is in 1 … 4, and a floor under every pivot bounds all else: |L_ij|·√D_j ≤ √A_ii. A row
+//! that says nothing new has a pivot next to zero; it is eased: [`EASE`] is added to that pivot alone, so what is only
+//! badly conditioned, as a tall stack, stays exact.
 //!
 //! | value | format | bound | why |
 //! |---|---|---|---|
 //! | A, C = L·D | Q58, i64 | 2⁶¹ | \|C_ij\| ≤ √(A_ii·D_j) ≤ 4 |
-//! | D | Q58 | 2⁴⁴ … 2⁶¹ | refused below [`FLOOR`] |
-//! | 1/D | Q44 | 2⁵⁸ | of the above |
+//! | D | Q58 | 2⁴⁵ … 2⁶¹ | at least [`EASE`] |
+//! | 1/D | Q44 | 2⁵⁷ | of the above |
 //! | L | Q52 | 2⁶¹ | \|L_ij\| ≤ 2/√D_j ≤ 2⁸ |
 //! | right side, solution | Q44 | 2⁵⁷ (8192) | refused beyond |
 //!
@@ -14,8 +16,10 @@
 
 /// How many rows a system may have.
 pub(crate) const ROWS: usize = 256;
-/// The least pivot, 2⁻¹⁴.
-const FLOOR: i64 = 1 << 44;
+/// What is added to a pivot that is less, 2⁻¹³.
+pub(crate) const EASE: i64 = 1 << 45;
+/// A pivot that is negative by more is no rounding: 2⁻²⁴.
+const NOISE: i64 = 1 << 34;
 /// The bound of right sides and solutions.
 const FAR: u64 = 1 << 57;
 
@@ -32,6 +36,8 @@ pub(crate) struct Envelope {
     /// The diagonal: A, then D.
     pivots: Vec<i64>,
     inverses: Vec<i64>,
+    /// By row, whether its pivot was raised.
+    eased: Vec<bool>,
 }
 
 /// `value / 2^shift` to nearest and odd. Range: |value| < 2¹²⁶, 1 ≤ shift ≤ 125.
@@ -48,18 +54,14 @@ fn product(a: &[i64], b: &[i64]) -> i128 {
 impl Envelope {
     /// Forgets the system.
     pub(crate) fn clear(&mut self) {
-        let Envelope { first, start, entries, lower, pivots, inverses } = self;
+        let Envelope { first, start, entries, lower, pivots, inverses, eased } = self;
+        eased.clear();
         for column in [first, start] {
             column.clear();
         }
         for column in [entries, lower, pivots, inverses] {
             column.clear();
         }
-    }
-
-    /// How many rows there are.
-    pub(crate) fn rows(&self) -> usize {
-        self.pivots.len()
     }
 
     /// Adds a row that begins at a column, of zeros but for the diagonal.
@@ -81,10 +83,11 @@ impl Envelope {
 
     /// Factors the system. Whether it is clearly positive definite.
     pub(crate) fn factor(&mut self) -> bool {
-        let Envelope { first, start, entries, lower, pivots, inverses } = self;
+        let Envelope { first, start, entries, lower, pivots, inverses, eased } = self;
         lower.clear();
         lower.resize(entries.len(), 0);
         inverses.clear();
+        eased.clear();
         if pivots.len() > ROWS {
             return false;
         }
@@ -104,18 +107,26 @@ impl Envelope {
                 *l = rounded(c as i128 * inverse as i128, 50);
             }
             let pivot = pivots[i] - rounded(product(own, below), 52);
-            if pivot < FLOOR {
+            if pivot < -NOISE {
                 return false;
             }
+            let says_nothing = pivot < EASE;
+            eased.push(says_nothing);
+            let pivot = if says_nothing { pivot + EASE + NOISE } else { pivot };
             pivots[i] = pivot;
             inverses.push((((1 << 102) + (pivot as i128 >> 1)) / pivot as i128) as i64);
         }
         true
     }
 
+    /// Whether the last factorisation raised the pivot of a row: then the row is to yield by its unknown times [`EASE`].
+    pub(crate) fn is_eased(&self, row: usize) -> bool {
+        self.eased[row]
+    }
+
     /// Puts the solution in place of a right side. Whether all of it stayed in its range.
     pub(crate) fn solve(&self, x: &mut [i64]) -> bool {
-        let Envelope { first, start, entries: _, lower, pivots: _, inverses } = self;
+        let Envelope { first, start, entries: _, lower, pivots: _, inverses, eased: _ } = self;
         let row = |i: usize| (first[i] as usize, &lower[start[i] as usize..start[i] as usize + i - first[i] as usize]);
         for i in 0..x.len() {
             let (from, l) = row(i);
@@ -194,11 +205,24 @@ mod tests {
         let mut envelope = Envelope::default();
         envelope.push(0, 1 << 58);
         envelope.push(0, 1 << 58);
-        envelope.set(0, 1 << 58);
+        envelope.set(0, (1 << 58) + (1 << 50));
         assert!(!envelope.factor());
         envelope.clear();
         envelope.push(0, 1 << 58);
         assert!(envelope.factor());
         assert!(!envelope.solve(&mut [1 << 60]));
+    }
+
+    #[test]
+    fn a_row_that_says_nothing_new_is_eased() {
+        let mut envelope = Envelope::default();
+        envelope.push(0, 1 << 58);
+        envelope.push(0, 1 << 58);
+        envelope.set(0, 1 << 58);
+        assert!(envelope.factor());
+        assert_eq!([0, 1].map(|row| envelope.is_eased(row)), [false, true]);
+        let mut x = [3 << 44, 3 << 44];
+        assert!(envelope.solve(&mut x));
+        assert!((x[0] - (3 << 44)).abs() < 16 && x[1].abs() < 16, "{x:?}");
     }
 }

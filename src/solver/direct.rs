@@ -12,21 +12,20 @@ use super::mobility::Mobility;
 use super::mover::{Mover, Movers};
 use super::rows::{Block, IMPULSE_MAX, LANES, Look};
 use super::scales::{SLOP, Scales};
-use crate::num::envelope::{Envelope, ROWS};
+use crate::num::envelope::{EASE, Envelope, ROWS};
 use crate::num::lane::{add, deeper, limit, mul, next, round, sub};
-use crate::num::round_shift;
+use crate::num::{div, mul as mul_wide, round_shift};
 
 /// Rows of a contact: friction, and its points.
 const FRICTION: u8 = 1;
 const POINTS: u8 = 6;
-/// How many rounds a solve may take.
-const PIVOTS: u32 = 8;
+/// How many rounds a solve may take, and how many of them with as many wrong rows as before.
+const ROUNDS: u32 = 32;
+const PATIENCE: u32 = 4;
 /// How many factorisations an island may take in a tick; then it is swept.
-const FACTORS: u32 = 48;
+const FACTORS: u32 = 128;
 /// How fast a row that does not push may close, Q20: what the rounding of reads makes.
 const STILL: i64 = 16;
-/// What is added to the diagonal, which rows that say the same need: 2⁻¹³.
-const EASE: i64 = 1 << 45;
 /// How often an island is swept instead, when pivoting does not end.
 const SWEEPS: u32 = 4;
 /// The greatest ratio of inverse masses of rows, as a power of two of its root.
@@ -67,8 +66,13 @@ struct Joined {
     couplings: [u32; 2],
     /// By row, where it is among the equations.
     row: [u16; 3],
-    /// Impulses when the solve began: friction, points.
+    /// By row, the speed that it lacks, Q20.
+    lack: [i64; 3],
+    /// Impulses when the solve began, and what changes them: friction, points.
     before: [i32; 3],
+    change: [i64; 3],
+    /// Rows that are to change sides.
+    wrong: u8,
 }
 
 /// A_ij of the rows of a contact with those of an earlier one, or its own.
@@ -83,6 +87,8 @@ struct Island {
     contacts: Vec<Joined>,
     couplings: Vec<Coupling>,
     envelope: Envelope,
+    /// How many rows are equations, and what solves them.
+    equations: u16,
     solution: Vec<i64>,
     /// Bodies, and their velocities when the solve began.
     before: Vec<(u32, [i64; 3])>,
@@ -90,8 +96,11 @@ struct Island {
     factors: u32,
     /// Whether the envelope is that of the active rows.
     factored: bool,
-    /// Whether a row pushed an overlap apart.
+    /// Whether a row pushed an overlap apart, and how fast one does at most: so that the highest body is not faster than one
+    /// contact may make it.
     pushes: bool,
+    push: i64,
+    /// Whether it is swept.
     swept: bool,
 }
 
@@ -105,18 +114,19 @@ impl Direct {
         blocks: &[Block],
         movers: &Movers,
         mobilities: &[Mobility],
+        scales: &Scales,
     ) {
-        let members = islands.members();
-        self.count = members.len();
-        if members.is_empty() {
+        self.count = islands.iter().len();
+        if self.count == 0 {
             return;
         }
-        if self.islands.len() < members.len() {
-            self.islands.resize_with(members.len(), Island::default);
+        if self.islands.len() < self.count {
+            self.islands.resize_with(self.count, Island::default);
         }
         self.weights.clear();
         self.weights.resize(movers.lanes.len(), Weight::default());
-        for (island, members) in self.islands.iter_mut().zip(members) {
+        for (island, (members, depth)) in self.islands.iter_mut().zip(islands.iter()) {
+            island.push = scales.push.checked_div(depth.into()).unwrap_or(scales.push);
             island.before.clear();
             for &place in members.iter().flat_map(|&at| &places[at as usize]).filter(|&&place| place != 0) {
                 let mobility = &mobilities[movers.slot(place)];
@@ -170,6 +180,47 @@ fn coupled(a: &Jacobian, b: &Jacobian, weight: &Weight, shift: u32) -> i128 {
     let around = round_shift(i128::from(mul(a.arm, b.arm)).saturating_mul(weight.tau.into()), 28);
     // Q56, at most 2⁷¹, times 49 bits.
     round_shift(around.saturating_add(along.into()).saturating_mul(weight.w.into()), weight.shift.saturating_add(shift))
+}
+
+/// A row's impulse.
+fn impulse_of(block: &Block, i: usize, row: usize) -> i64 {
+    match row {
+        0 => block.friction.impulse[i].into(),
+        _ => block.points[row.saturating_sub(1)].impulse[i].into(),
+    }
+}
+
+impl Joined {
+    /// Which rows are equations at first: points that push or close, and friction that holds.
+    fn begin(&mut self, block: &Block, i: usize, slip: i64, push: [bool; 2]) {
+        (self.active, self.slides) = (0, false);
+        // An impact may have taken the contact.
+        if block.bodies[0][i] == block.bodies[1][i] {
+            return;
+        }
+        let drag = impulse_of(block, i, 0);
+        let against = drag > 0 && slip < STILL.saturating_neg() || drag < 0 && slip > STILL;
+        self.slides = against && drag.saturating_abs() >= block.hold(i, [0, 1].map(|at| block.points[at].impulse[i]));
+        let points = (u8::from(push[0]) << 1 | u8::from(push[1]) << 2) & self.present;
+        let sticks = points != 0 && !self.slides;
+        self.active = points | if sticks { self.present & FRICTION } else { 0 };
+    }
+
+    /// Changes impulses: friction's, and those of points.
+    fn give(&self, blocks: &mut [Block], movers: &mut [Mover], change: [i32; 3]) {
+        if change == [0; 3] {
+            return;
+        }
+        let (block, i) = (&mut blocks[self.seat as usize / LANES], self.seat as usize % LANES);
+        block.give(i, movers, change);
+        let [slide, first, second] = change;
+        block.friction.impulse[i] = block.friction.impulse[i].saturating_add(slide);
+        for (at, change) in [first, second].into_iter().enumerate() {
+            let impulse = block.points[at].impulse[i].saturating_add(change);
+            block.points[at].impulse[i] = impulse;
+            block.peak[at][i] = block.peak[at][i].max(impulse);
+        }
+    }
 }
 
 impl Island {
@@ -250,22 +301,36 @@ impl Island {
     }
 
     /// Finds which rows push, and solves them. Whether that came to an end; all is as before if not.
+    ///
+    /// All rows that are wrong change sides at once, as long as there come to be fewer of them; if not, only the last one does,
+    /// which comes to an end.
     fn pivot<const BIASED: bool>(&mut self, blocks: &mut [Block], movers: &mut [Mover], scales: &Scales) -> bool {
         self.remember(blocks, movers);
-        for round in 0..=PIVOTS {
-            let changed = self.choose::<BIASED>(round == 0, blocks, movers, scales);
-            if round > 0 && !changed {
-                return true;
+        let (mut least, mut patience) = (u32::MAX, PATIENCE);
+        for round in 0..ROUNDS {
+            self.choose::<BIASED>(round == 0, blocks, movers, scales);
+            if std::env::var("DBG").is_ok() && self.contacts.len() >= 20000 && round == 0 {
+                for j in self.contacts.iter().take(6) { let b = &blocks[j.seat as usize / LANES]; let i = j.seat as usize % LANES; let l = b.look(i, movers);
+                eprintln!("   {:?} slip {:.5} v {:.5} {:.5} s {:.6} {:.6} lambda {:.4} {:.4} {:.4} hold {:.4} slides {} active {:b}", j.places, l.slip as f64/2f64.powi(48), l.speed[0] as f64/2f64.powi(48), l.speed[1] as f64/2f64.powi(48), l.separation[0] as f64/2f64.powi(26), l.separation[1] as f64/2f64.powi(26), b.friction.impulse[i] as f64/1048576.0, b.points[0].impulse[i] as f64/1048576.0, b.points[1].impulse[i] as f64/1048576.0, b.hold(i, [b.points[0].impulse[i], b.points[1].impulse[i]]) as f64/1048576.0, j.slides, j.active); }
             }
-            if round == PIVOTS || !self.factor() || !self.envelope.solve(&mut self.solution) {
+            if !self.factor() || !self.solve(blocks) {
                 break;
             }
-            match self.apply(blocks, movers) {
-                Some(true) => return true,
-                Some(false) => {}
-                None => break,
+            self.apply(blocks, movers);
+            let wrong = self.examine::<BIASED>(blocks, movers, scales);
+            if std::env::var("DBG").is_ok() && self.contacts.len() >= 20 && (wrong > 0 || round > 0) {
+                let most = self.contacts.iter().map(|j| (0..2).map(|at| blocks[j.seat as usize / LANES].points[at].impulse[j.seat as usize % LANES]).max().unwrap()).max().unwrap();
+                let least = self.contacts.iter().map(|j| (0..2).map(|at| blocks[j.seat as usize / LANES].points[at].impulse[j.seat as usize % LANES]).min().unwrap()).min().unwrap();
+                eprintln!("biased {BIASED} round {round} eqs {} wrong {wrong}: {:?} impulses {} {}", self.solution.len(), self.contacts.iter().enumerate().filter(|(_, j)| j.wrong != 0).map(|(at, j)| format!("{at}:{:b}/{:b}", j.wrong, j.active)).take(8).collect::<Vec<_>>(), least as f64 / 1048576.0, most as f64 / 1048576.0);
             }
+            if wrong == 0 {
+                return true;
+            }
+            patience = if wrong < least { PATIENCE } else { patience.saturating_sub(1) };
+            least = least.min(wrong);
+            self.exchange(patience > 0, blocks, movers);
         }
+        eprintln!("FAIL n {} biased {} factors {} factored {} eqs {}", self.contacts.len(), BIASED, self.factors, self.factored, self.solution.len());
         self.restore(blocks, movers);
         self.swept |= self.factors >= FACTORS;
         false
@@ -294,54 +359,35 @@ impl Island {
         }
     }
 
-    /// Which rows are equations, and what they lack. Whether others than before are.
-    fn choose<const BIASED: bool>(&mut self, first: bool, blocks: &[Block], movers: &[Mover], scales: &Scales) -> bool {
+    /// What the rows that push lack. The `first` time it is chosen which do: those that did, and those that close.
+    fn choose<const BIASED: bool>(&mut self, first: bool, blocks: &[Block], movers: &[Mover], scales: &Scales) {
         let mut changed = false;
-        self.solution.clear();
-        if first && BIASED {
-            self.pushes = false;
-        }
+        self.equations = 0;
+        self.pushes &= !(first && BIASED);
         for joined in &mut self.contacts {
             let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
             let look = block.look(i, movers);
             let slip = i64::from(limit(round::<28>(look.slip)));
-            let lack = [0, 1].map(|at| lack::<BIASED>(&look, at, scales));
-            let load = [0, 1].map(|at| block.points[at].impulse[i]);
-            let drag = block.friction.impulse[i];
-            if block.bodies[0][i] == block.bodies[1][i] {
-                // An impact took it.
-                joined.active = 0;
-            } else {
-                if first {
-                    joined.active = 0;
-                    let slides = drag != 0 && i64::from(drag.unsigned_abs()) >= block.hold(i, load);
-                    let against = drag > 0 && slip < -STILL || drag < 0 && slip > STILL;
-                    joined.slides = slides && against;
-                }
-                for at in 0..2 {
-                    let bit = 2 << at & joined.present;
-                    if lack[at] < -STILL || first && load[at] > 0 {
-                        joined.active |= bit;
-                    }
-                    self.pushes |= BIASED && joined.active & bit != 0 && look.separation[at] < -SLOP;
-                }
-                let sticks = joined.active & POINTS != 0 && !joined.slides;
-                joined.active = joined.active & POINTS | if sticks { joined.present & FRICTION } else { 0 };
+            let lack = [0, 1].map(|at| lack::<BIASED>(&look, at, self.push, scales));
+            if first {
+                let load = [0, 1].map(|at| block.points[at].impulse[i]);
+                joined.begin(block, i, slip, [0, 1].map(|at| load[at] > 0 || lack[at] < STILL.saturating_neg()));
+            }
+            for at in 0..2 {
+                self.pushes |= BIASED && joined.active & 2 << at != 0 && look.separation[at] < SLOP.saturating_neg();
             }
             changed |= joined.active != joined.solved;
             joined.solved = joined.active;
-            for (row, value) in [slip, lack[0], lack[1]].into_iter().enumerate() {
+            joined.lack = [slip, lack[0], lack[1]];
+            for row in 0..3 {
+                joined.row[row] = NONE;
                 if joined.active >> row & 1 != 0 {
-                    joined.row[row] = self.solution.len() as u16;
-                    let value = i128::from(value).saturating_neg() << 24;
-                    self.solution.push(round_shift(value, joined.shift[row]) as i64);
-                } else {
-                    joined.row[row] = NONE;
+                    joined.row[row] = self.equations;
+                    self.equations = self.equations.saturating_add(1);
                 }
             }
         }
         self.factored &= !changed;
-        changed
     }
 
     /// Factors the system of the active rows, if it is another one.
@@ -349,7 +395,7 @@ impl Island {
         if self.factored {
             return true;
         }
-        if self.solution.len() > ROWS || self.factors >= FACTORS {
+        if usize::from(self.equations) > ROWS || self.factors >= FACTORS {
             return false;
         }
         self.factors = self.factors.saturating_add(1);
@@ -359,7 +405,7 @@ impl Island {
             let of = |coupling: &Coupling| self.contacts[coupling.other as usize].row;
             let first = couplings.iter().flat_map(of).min().unwrap_or(0);
             for row in (0..3).filter(|&row| joined.row[row] != NONE) {
-                self.envelope.push(first.into(), joined.diagonal[row].saturating_add(EASE));
+                self.envelope.push(first.into(), joined.diagonal[row]);
                 for coupling in couplings {
                     for (column, &at) in of(coupling).iter().enumerate() {
                         if at < joined.row[row] {
@@ -373,55 +419,109 @@ impl Island {
         self.factored
     }
 
-    /// Gives what was solved to rows and bodies. Rows that would pull, and friction that would hold too much, are left out of
-    /// the next round. Whether it is done; nothing if an impulse left its range.
-    fn apply(&mut self, blocks: &mut [Block], movers: &mut [Mover]) -> Option<bool> {
-        let mut done = true;
+    /// Solves the equations. Whether all of it stayed in its range.
+    fn solve(&mut self, blocks: &[Block]) -> bool {
+        self.solution.clear();
+        for joined in &self.contacts {
+            let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
+            for row in (0..3).filter(|&row| joined.row[row] != NONE) {
+                let mut lack = i128::from(joined.lack[row]) << 24;
+                if self.envelope.is_eased(joined.row[row].into()) {
+                    // In all, not in this round: else what says the same would drift apart.
+                    let yields = i128::from(impulse_of(block, i, row)).saturating_mul(EASE.into()) << 24;
+                    lack = lack.saturating_add(div(yields, joined.diagonal[row].into()));
+                }
+                self.solution.push(round_shift(lack.saturating_neg(), joined.shift[row]) as i64);
+            }
+        }
+        self.envelope.solve(&mut self.solution)
+    }
+
+    /// What was solved, as changes of impulses, and by which part of it the first of them reaches the end of its range.
+    fn apply(&mut self, blocks: &mut [Block], movers: &mut [Mover]) {
+        const WHOLE: i64 = 1 << 30;
+        let mut part = WHOLE;
         for joined in &mut self.contacts {
-            let (block, i) = (&mut blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
-            let old = [block.friction.impulse[i], block.points[0].impulse[i], block.points[1].impulse[i]];
-            let mut now = old.map(i64::from);
-            for (row, now) in now.iter_mut().enumerate() {
-                if joined.row[row] != NONE {
-                    let x = i128::from(self.solution[joined.row[row] as usize]);
-                    let change = round_shift(
-                        x.saturating_mul(joined.diagonal[row].into()),
-                        82u32.saturating_sub(joined.shift[row]),
-                    );
-                    *now = now.saturating_add(change as i64);
+            let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
+            for row in 0..3 {
+                joined.change[row] = 0;
+                if joined.row[row] == NONE {
+                    continue;
                 }
-            }
-            for row in 1..3 {
-                if now[row] < 0 {
-                    now[row] = 0;
-                    joined.active &= !(1 << row);
-                    done = false;
-                }
-            }
-            if now[1].max(now[2]) > IMPULSE_MAX {
-                return None;
-            }
-            done &= joined.active & POINTS == joined.present & POINTS;
-            let hold = block.hold(i, [now[1] as i32, now[2] as i32]);
-            if now[0].abs() > hold && joined.active & FRICTION != 0 {
-                joined.slides = true;
-                joined.active &= !FRICTION;
-                done = false;
-            }
-            let most = if joined.slides { hold } else { now[0].abs().min(hold) };
-            now[0] = now[0].signum().saturating_mul(most);
-            let change = [0, 1, 2].map(|row: usize| sub(now[row], old[row].into()) as i32);
-            if change != [0; 3] {
-                block.give(i, movers, change);
-                block.friction.impulse[i] = now[0] as i32;
-                for at in 0..2 {
-                    let impulse = now[next(at)] as i32;
-                    block.points[at].impulse[i] = impulse;
-                    block.peak[at][i] = block.peak[at][i].max(impulse);
+                let x = i128::from(self.solution[joined.row[row] as usize]);
+                let shift = 82u32.saturating_sub(joined.shift[row]);
+                let change = round_shift(x.saturating_mul(joined.diagonal[row].into()), shift) as i64;
+                joined.change[row] = change;
+                let now = impulse_of(block, i, row);
+                let room = sub(IMPULSE_MAX, if change > 0 { now } else { now.saturating_neg() });
+                if change.saturating_abs() > room {
+                    let fits = div(i128::from(room.max(0)) << 30, change.unsigned_abs().into()) as i64;
+                    part = part.min(fits);
                 }
             }
         }
-        Some(done)
+        for joined in &mut self.contacts {
+            if part < WHOLE {
+                joined.change = joined.change.map(|change| mul_wide(change, part, 30));
+            }
+            let change = joined.change.map(|change| change as i32);
+            joined.give(blocks, movers, change);
+        }
+    }
+
+    /// How many rows are wrong: they pull, close without pushing, or hold more than friction can. What slides holds all that
+    /// friction can.
+    fn examine<const BIASED: bool>(&mut self, blocks: &mut [Block], movers: &mut [Mover], scales: &Scales) -> u32 {
+        let mut wrong = 0u32;
+        for joined in &mut self.contacts {
+            let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
+            joined.wrong = 0;
+            let load = [0, 1].map(|at| block.points[at].impulse[i]);
+            let idle = joined.present & POINTS & !joined.active;
+            if idle != 0 && block.bodies[0][i] != block.bodies[1][i] {
+                let look = block.look(i, movers);
+                for at in (0..2).filter(|at| idle >> next(*at) & 1 != 0) {
+                    joined.wrong |= if lack::<BIASED>(&look, at, self.push, scales) < STILL.saturating_neg() { 2 << at } else { 0 };
+                }
+            }
+            for (at, &load) in load.iter().enumerate() {
+                joined.wrong |= if load < 0 { 2 << at } else { 0 };
+            }
+            let hold = block.hold(i, load.map(|load| load.max(0)));
+            let drag = impulse_of(block, i, 0);
+            if joined.active & FRICTION != 0 && drag.saturating_abs() > hold {
+                joined.wrong |= FRICTION;
+            } else if joined.slides {
+                joined.give(blocks, movers, [sub(drag.signum().saturating_mul(hold), drag) as i32, 0, 0]);
+            }
+            wrong = wrong.saturating_add(joined.wrong.count_ones());
+        }
+        wrong
+    }
+
+    /// Rows that are wrong change sides, all of them or the last one.
+    fn exchange(&mut self, all: bool, blocks: &mut [Block], movers: &mut [Mover]) {
+        for joined in self.contacts.iter_mut().rev().filter(|joined| joined.wrong != 0) {
+            let rows = if all { joined.wrong } else { 1 << joined.wrong.ilog2() };
+            let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
+            let mut now = [0, 1, 2].map(|row| impulse_of(block, i, row));
+            for row in (1..3).filter(|row| rows >> row & 1 != 0 && joined.active >> row & 1 != 0) {
+                now[row] = 0;
+            }
+            joined.active ^= rows & POINTS;
+            joined.slides |= rows & FRICTION != 0;
+            let sticks = joined.active & POINTS != 0 && !joined.slides;
+            joined.active = joined.active & POINTS | if sticks { joined.present & FRICTION } else { 0 };
+            if !sticks {
+                let hold = block.hold(i, [now[1].max(0) as i32, now[2].max(0) as i32]);
+                now[0] = now[0].signum().saturating_mul(if joined.active == 0 { 0 } else { hold });
+            }
+            let change = [0, 1, 2].map(|row| sub(now[row], impulse_of(block, i, row)) as i32);
+            joined.give(blocks, movers, change);
+            if !all {
+                break;
+            }
+        }
     }
 
     /// Sweeps the island as if it were soft.
@@ -436,11 +536,11 @@ impl Island {
 }
 
 /// The speed that a point lacks, Q20: its own and what its gap or its overlap asks for.
-fn lack<const BIASED: bool>(look: &Look, at: usize, scales: &Scales) -> i64 {
+fn lack<const BIASED: bool>(look: &Look, at: usize, push: i64, scales: &Scales) -> i64 {
     let separation = look.separation[at];
     let bias = match separation > 0 {
         true => mul(separation, scales.close_rate) >> 20,
-        false if BIASED => (mul(deeper(separation, SLOP), scales.rigid_rate) >> 20).max(scales.push),
+        false if BIASED => (mul(deeper(separation, SLOP), scales.rigid_rate) >> 20).max(push),
         false => 0,
     };
     limit(add(round::<28>(look.speed[at]), bias)).into()

@@ -24,6 +24,8 @@ pub(crate) struct Islands {
     level: Vec<u32>,
     /// By hard island: its contacts, from what does not move on.
     members: Vec<Vec<u32>>,
+    /// By hard island: its highest level.
+    depth: Vec<u32>,
     found: usize,
 }
 
@@ -67,14 +69,15 @@ impl Islands {
         }
         self.level.clear();
         self.level.resize(free.len(), NONE);
+        self.depth.clear();
         for members in &mut self.members[..self.found] {
-            order(members, places, free, &mut self.level);
+            self.depth.push(order(members, places, free, &mut self.level));
         }
     }
 
-    /// The contacts of each hard island, from what does not move on.
-    pub(crate) fn members(&self) -> &[Vec<u32>] {
-        &self.members[..self.found]
+    /// The contacts of each hard island, from what does not move on, and its highest level.
+    pub(crate) fn iter(&self) -> impl ExactSizeIterator<Item = (&[u32], u32)> {
+        self.members[..self.found].iter().map(Vec::as_slice).zip(self.depth.iter().copied())
     }
 
     /// Joins what contacts hold together.
@@ -103,8 +106,8 @@ fn leader_of(leader: &mut [u32], mut place: u32) -> u32 {
     place
 }
 
-/// Orders an island's contacts by levels, so that what touches is near each other.
-fn order(members: &mut [u32], places: &[[u32; 2]], free: &[bool], level: &mut [u32]) {
+/// Orders an island's contacts by levels, so that what touches is near each other. The highest level.
+fn order(members: &mut [u32], places: &[[u32; 2]], free: &[bool], level: &mut [u32]) -> u32 {
     let grounded = |at: &u32| places[*at as usize].into_iter().any(|place| free[place as usize]);
     if let (false, Some(&first)) = (members.iter().any(grounded), members.first()) {
         level[places[first as usize][0] as usize] = 1;
@@ -125,8 +128,10 @@ fn order(members: &mut [u32], places: &[[u32; 2]], free: &[bool], level: &mut [u
             }
         }
     }
+    let levels = |at: u32| places[at as usize].map(|place| if free[place as usize] { 0 } else { level[place as usize] });
     members.sort_unstable_by_key(|&at| {
-        let levels = places[at as usize].map(|place| if free[place as usize] { 0 } else { level[place as usize] });
+        let levels = levels(at);
         (levels[0].max(levels[1]), levels[0].min(levels[1]), at)
     });
+    members.last().map_or(1, |&at| levels(at)[0].max(levels(at)[1]))
 }

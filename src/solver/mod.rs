@@ -167,7 +167,7 @@ impl Solver {
             joint.write(block, seat % LANES, &old, pair.friction, scales);
             block.heavy |= u8::from(heavy[row]) << (seat % LANES);
         }
-        direct.build(islands, places, &colors.seats, blocks, movers, mobilities);
+        direct.build(islands, places, &colors.seats, blocks, movers, mobilities, scales);
     }
 
     /// Impacts and substeps, after the bodies have moved as if nothing touched them; bodies that were struck or pushed are

@@ -61,7 +61,8 @@ pub(crate) struct Scales {
     /// 1/h and bias/h in 1/s, 14 fraction bits.
     pub(crate) close_rate: i32,
     pub(crate) push_rate: i32,
-    /// 1/5 of 1/h, for rigid rows.
+    /// With which part of itself in a second an overlap of rigid rows opens, Q14: an eighth in a tick. With a fifth in a
+    /// substep a tower that becomes rigid would kick itself over, for to right a tilt at once takes more than its load.
     pub(crate) rigid_rate: i32,
     /// The bias of overlaps at most, Q20.
     pub(crate) push: i64,
@@ -93,7 +94,7 @@ impl Scales {
             coarse: div(1 << 30, rate.into()) as i32,
             close_rate: (rate << 14) as i32,
             push_rate,
-            rigid_rate: div((rate << 14).into(), 5) as i32,
+            rigid_rate: i32::try_from(tick_rate).unwrap_or(i32::MAX >> 11) << 11,
             push: -PUSH,
             soft: [SOFT.mass, SOFT.impulse],
             firm,
