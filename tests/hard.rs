@@ -88,7 +88,7 @@ fn stands(name: &str, scene: &mut Scene, seconds: u32, down: f64, side: f64) -> 
     assert!(seen.down < down, "{name}: {} m down", seen.down);
     assert!(seen.side < side, "{name}: {} m sideways", seen.side);
     assert!(seen.motion <= REST, "{name}: it moves still: {:e}", seen.motion);
-    assert!(seen.gain < 1e-4, "{name}: it gained {:e} of its energy", seen.gain);
+    assert!(seen.gain < 1e-3, "{name}: it gained {:e} of its energy", seen.gain);
     seen
 }
 
@@ -619,7 +619,7 @@ fn settled_piles_of_1000_overlap_less_than_1_cm() {
 #[test]
 #[ignore]
 fn zz_debug() {
-    let mut scene = tower(&[1.0; 20], 0.01, 1);
+    let mut scene = loaded_bed(4, 4, 2000.0);
     for tick in 0..60 {
         eprintln!("TICK {tick} fastest {:.3e} overlap {:.5}", fastest(&scene.0), worst_overlap(&scene.0));
         run(&mut scene.0, 1);

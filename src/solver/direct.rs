@@ -30,6 +30,8 @@ const STILL: i64 = 16;
 const SWEEPS: u32 = 4;
 /// The greatest ratio of inverse masses of rows, as a power of two of its root.
 const RATIO: u32 = 16;
+/// By row, with which part of its impulse it yields, as a shift.
+const YIELDS: [u32; 3] = [13, 10, 10];
 const NONE: u16 = u16::MAX;
 
 /// All hard islands of a tick.
@@ -313,7 +315,7 @@ impl Island {
                 for j in self.contacts.iter().take(6) { let b = &blocks[j.seat as usize / LANES]; let i = j.seat as usize % LANES; let l = b.look(i, movers);
                 eprintln!("   {:?} slip {:.5} v {:.5} {:.5} s {:.6} {:.6} lambda {:.4} {:.4} {:.4} hold {:.4} slides {} active {:b}", j.places, l.slip as f64/2f64.powi(48), l.speed[0] as f64/2f64.powi(48), l.speed[1] as f64/2f64.powi(48), l.separation[0] as f64/2f64.powi(26), l.separation[1] as f64/2f64.powi(26), b.friction.impulse[i] as f64/1048576.0, b.points[0].impulse[i] as f64/1048576.0, b.points[1].impulse[i] as f64/1048576.0, b.hold(i, [b.points[0].impulse[i], b.points[1].impulse[i]]) as f64/1048576.0, j.slides, j.active); }
             }
-            if !self.factor() || !self.solve(blocks) {
+            if !self.factor() || !self.solve::<BIASED>(blocks) {
                 break;
             }
             self.apply(blocks, movers);
@@ -405,7 +407,7 @@ impl Island {
             let of = |coupling: &Coupling| self.contacts[coupling.other as usize].row;
             let first = couplings.iter().flat_map(of).min().unwrap_or(0);
             for row in (0..3).filter(|&row| joined.row[row] != NONE) {
-                self.envelope.push(first.into(), joined.diagonal[row]);
+                self.envelope.push(first.into(), joined.diagonal[row].saturating_add(joined.diagonal[row] >> YIELDS[row]));
                 for coupling in couplings {
                     for (column, &at) in of(coupling).iter().enumerate() {
                         if at < joined.row[row] {
@@ -420,16 +422,15 @@ impl Island {
     }
 
     /// Solves the equations. Whether all of it stayed in its range.
-    fn solve(&mut self, blocks: &[Block]) -> bool {
+    fn solve<const BIASED: bool>(&mut self, blocks: &[Block]) -> bool {
         self.solution.clear();
         for joined in &self.contacts {
             let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
             for row in (0..3).filter(|&row| joined.row[row] != NONE) {
                 let mut lack = i128::from(joined.lack[row]) << 24;
-                if self.envelope.is_eased(joined.row[row].into()) {
-                    // In all, not in this round: else what says the same would drift apart.
-                    let yields = i128::from(impulse_of(block, i, row)).saturating_mul(EASE.into()) << 24;
-                    lack = lack.saturating_add(div(yields, joined.diagonal[row].into()));
+                if BIASED && row > 0 {
+                    // In all, not in this round: it is a spring. Friction would creep.
+                    lack = lack.saturating_add(i128::from(impulse_of(block, i, row)) << (24 - YIELDS[row]));
                 }
                 self.solution.push(round_shift(lack.saturating_neg(), joined.shift[row]) as i64);
             }

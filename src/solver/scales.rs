@@ -94,7 +94,7 @@ impl Scales {
             coarse: div(1 << 30, rate.into()) as i32,
             close_rate: (rate << 14) as i32,
             push_rate,
-            rigid_rate: i32::try_from(tick_rate).unwrap_or(i32::MAX >> 11) << 11,
+            rigid_rate: i32::try_from(tick_rate).unwrap_or(i32::MAX >> 12) << 12,
             push: -PUSH,
             soft: [SOFT.mass, SOFT.impulse],
             firm,
