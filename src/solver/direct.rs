@@ -12,16 +12,13 @@ use super::mobility::Mobility;
 use super::mover::{Mover, Movers};
 use super::rows::{Block, IMPULSE_MAX, LANES, Look};
 use super::scales::{SLOP, Scales};
-use crate::num::envelope::{EASE, Envelope, ROWS};
-use crate::num::lane::{add, deeper, limit, mul, next, round, sub};
-use crate::num::{div, mul as mul_wide, round_shift};
+use crate::num::envelope::{Envelope, ROWS};
+use crate::num::lane::{add, clamp, deeper, limit, mul, next, round, sub};
+use crate::num::{div, round_shift};
 
-/// Rows of a contact: friction, and its points.
-const FRICTION: u8 = 1;
-const POINTS: u8 = 6;
-/// How many rounds a solve may take, and how many of them with as many wrong rows as before.
-const ROUNDS: u32 = 32;
-const PATIENCE: u32 = 4;
+/// How many steps a solve may take, and how often one is halved.
+const ROUNDS: u32 = 8;
+const HALVINGS: u32 = 12;
 /// How many factorisations an island may take in a tick; then it is swept.
 const FACTORS: u32 = 128;
 /// How fast a row that does not push may close, Q20: what the rounding of reads makes.
@@ -56,11 +53,11 @@ struct Weight {
 struct Joined {
     seat: u32,
     places: [u32; 2],
-    /// Rows that there are, those that push, those that are equations at present, and whether friction slides.
+    /// Rows that there are, and those that are equations.
     present: u8,
     active: u8,
-    solved: u8,
-    slides: bool,
+    /// What friction holds at most, by the loads when the solve began, Q20.
+    hold: i64,
     /// By row: h less the least of the island, and A_ii.
     shift: [u32; 3],
     diagonal: [i64; 3],
@@ -68,13 +65,13 @@ struct Joined {
     couplings: [u32; 2],
     /// By row, where it is among the equations.
     row: [u16; 3],
-    /// By row, the speed that it lacks, Q20.
+    /// By row, the speed that it lacks, Q20, and lacked before the last step.
     lack: [i64; 3],
+    lacked: [i64; 3],
     /// Impulses when the solve began, and what changes them: friction, points.
     before: [i32; 3],
     change: [i64; 3],
-    /// Rows that are to change sides.
-    wrong: u8,
+    start: [i64; 3],
 }
 
 /// A_ij of the rows of a contact with those of an earlier one, or its own.
@@ -154,7 +151,7 @@ impl Direct {
             if !BIASED && !island.pushes && !island.swept {
                 continue;
             }
-            if island.swept || !island.pivot::<BIASED>(blocks, movers, scales) {
+            if island.swept || !island.solve_all::<BIASED>(blocks, movers, scales) {
                 island.sweep::<BIASED>(blocks, movers, scales);
             }
         }
@@ -193,35 +190,9 @@ fn impulse_of(block: &Block, i: usize, row: usize) -> i64 {
 }
 
 impl Joined {
-    /// Which rows are equations at first: points that push or close, and friction that holds.
-    fn begin(&mut self, block: &Block, i: usize, slip: i64, push: [bool; 2]) {
-        (self.active, self.slides) = (0, false);
-        // An impact may have taken the contact.
-        if block.bodies[0][i] == block.bodies[1][i] {
-            return;
-        }
-        let drag = impulse_of(block, i, 0);
-        let against = drag > 0 && slip < STILL.saturating_neg() || drag < 0 && slip > STILL;
-        self.slides = against && drag.saturating_abs() >= block.hold(i, [0, 1].map(|at| block.points[at].impulse[i]));
-        let points = (u8::from(push[0]) << 1 | u8::from(push[1]) << 2) & self.present;
-        let sticks = points != 0 && !self.slides;
-        self.active = points | if sticks { self.present & FRICTION } else { 0 };
-    }
-
-    /// Changes impulses: friction's, and those of points.
-    fn give(&self, blocks: &mut [Block], movers: &mut [Mover], change: [i32; 3]) {
-        if change == [0; 3] {
-            return;
-        }
-        let (block, i) = (&mut blocks[self.seat as usize / LANES], self.seat as usize % LANES);
-        block.give(i, movers, change);
-        let [slide, first, second] = change;
-        block.friction.impulse[i] = block.friction.impulse[i].saturating_add(slide);
-        for (at, change) in [first, second].into_iter().enumerate() {
-            let impulse = block.points[at].impulse[i].saturating_add(change);
-            block.points[at].impulse[i] = impulse;
-            block.peak[at][i] = block.peak[at][i].max(impulse);
-        }
+    /// Between which impulses a row is.
+    fn limits(&self, row: usize) -> [i64; 2] {
+        if row == 0 { [sub(0, self.hold), self.hold] } else { [0, IMPULSE_MAX] }
     }
 }
 
@@ -302,40 +273,80 @@ impl Island {
         joined.couplings = [begin, self.couplings.len() as u32];
     }
 
-    /// Finds which rows push, and solves them. Whether that came to an end; all is as before if not.
+    /// Finds what pushes, and how much, by projected Newton steps. Whether all stayed in its range; all is as before if not.
     ///
-    /// All rows that are wrong change sides at once, as long as there come to be fewer of them; if not, only the last one does,
-    /// which comes to an end.
-    fn pivot<const BIASED: bool>(&mut self, blocks: &mut [Block], movers: &mut [Mover], scales: &Scales) -> bool {
+    /// Impulses stay within their limits, and no step is taken that does not bring them nearer to the solution, so that where it
+    /// ends too early is a state to go on from.
+    fn solve_all<const BIASED: bool>(&mut self, blocks: &mut [Block], movers: &mut [Mover], scales: &Scales) -> bool {
+        self.pushes &= !BIASED;
         self.remember(blocks, movers);
-        let (mut least, mut patience) = (u32::MAX, PATIENCE);
+        self.look::<BIASED>(blocks, movers, scales);
         for round in 0..ROUNDS {
-            self.choose::<BIASED>(round == 0, blocks, movers, scales);
-            if std::env::var("DBG").is_ok() && self.contacts.len() >= 20000 && round == 0 {
-                for j in self.contacts.iter().take(6) { let b = &blocks[j.seat as usize / LANES]; let i = j.seat as usize % LANES; let l = b.look(i, movers);
-                eprintln!("   {:?} slip {:.5} v {:.5} {:.5} s {:.6} {:.6} lambda {:.4} {:.4} {:.4} hold {:.4} slides {} active {:b}", j.places, l.slip as f64/2f64.powi(48), l.speed[0] as f64/2f64.powi(48), l.speed[1] as f64/2f64.powi(48), l.separation[0] as f64/2f64.powi(26), l.separation[1] as f64/2f64.powi(26), b.friction.impulse[i] as f64/1048576.0, b.points[0].impulse[i] as f64/1048576.0, b.points[1].impulse[i] as f64/1048576.0, b.hold(i, [b.points[0].impulse[i], b.points[1].impulse[i]]) as f64/1048576.0, j.slides, j.active); }
-            }
-            if !self.factor() || !self.solve::<BIASED>(blocks) {
+            if !self.choose(blocks) && round > 0 {
                 break;
             }
-            self.apply(blocks, movers);
-            let wrong = self.examine::<BIASED>(blocks, movers, scales);
-            if std::env::var("DBG").is_ok() && self.contacts.len() >= 20 && (wrong > 0 || round > 0) {
-                let most = self.contacts.iter().map(|j| (0..2).map(|at| blocks[j.seat as usize / LANES].points[at].impulse[j.seat as usize % LANES]).max().unwrap()).max().unwrap();
-                let least = self.contacts.iter().map(|j| (0..2).map(|at| blocks[j.seat as usize / LANES].points[at].impulse[j.seat as usize % LANES]).min().unwrap()).min().unwrap();
-                eprintln!("biased {BIASED} round {round} eqs {} wrong {wrong}: {:?} impulses {} {}", self.solution.len(), self.contacts.iter().enumerate().filter(|(_, j)| j.wrong != 0).map(|(at, j)| format!("{at}:{:b}/{:b}", j.wrong, j.active)).take(8).collect::<Vec<_>>(), least as f64 / 1048576.0, most as f64 / 1048576.0);
+            loop {
+                if !self.factor() || !self.solve() {
+                    self.restore(blocks, movers);
+                    self.swept |= self.factors >= FACTORS;
+                    return false;
+                }
+                if !self.block() { break; }
             }
-            if wrong == 0 {
-                return true;
+            let mut whole = false;
+            let mut done = false;
+            for shorter in 0..HALVINGS {
+                whole = self.step(shorter, blocks, movers);
+                self.look::<BIASED>(blocks, movers, scales);
+                if whole || !self.rises(blocks) {
+                    done = true;
+                    break;
+                }
             }
-            patience = if wrong < least { PATIENCE } else { patience.saturating_sub(1) };
-            least = least.min(wrong);
-            self.exchange(patience > 0, blocks, movers);
+            if std::env::var("DBG").is_ok() && self.contacts.len() >= 20 && round > 0 { eprintln!("biased {BIASED} round {round} whole {whole} eqs {} factors {}", self.equations, self.factors); }
+            if !done {
+                if std::env::var("DBG").is_ok() { eprintln!("UNDONE {} round {round} eqs {}", self.contacts.len(), self.equations); }
+                self.step(63, blocks, movers);
+                break;
+            }
         }
-        eprintln!("FAIL n {} biased {} factors {} factored {} eqs {}", self.contacts.len(), BIASED, self.factors, self.factored, self.solution.len());
-        self.restore(blocks, movers);
-        self.swept |= self.factors >= FACTORS;
-        false
+        for joined in &mut self.contacts {
+            let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
+            let hold = block.hold(i, [0, 1].map(|at| block.points[at].impulse[i]));
+            let drag = impulse_of(block, i, 0);
+            joined.change = [sub(clamp(drag, sub(0, hold), hold), drag), 0, 0];
+        }
+        self.give(blocks, movers);
+        true
+    }
+
+    /// Whether the last step leads away from the solution: by the sum of its impulses times the speeds before and after.
+    fn rises(&self, blocks: &[Block]) -> bool {
+        let mut work = 0i128;
+        for joined in &self.contacts {
+            let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
+            for row in (0..3).filter(|&row| joined.row[row] != NONE) {
+                let speeds = i128::from(joined.lack[row].saturating_add(joined.lacked[row]));
+                let change = sub(impulse_of(block, i, row), joined.start[row]);
+                let part = div(speeds.saturating_mul(change.into()) << 40, (joined.diagonal[row] >> 18).into());
+                work = work.saturating_add(round_shift(part, joined.shift[row].saturating_mul(2)));
+            }
+        }
+        if std::env::var("DBG").is_ok() && self.contacts.len() >= 40 && work > 0 {
+            let mut first = 0f64; let mut all = 0f64; let mut most = 0f64;
+            for joined in &self.contacts {
+                let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
+                for row in (0..3).filter(|&row| joined.row[row] != NONE) {
+                    let d = (impulse_of(block, i, row) - joined.start[row]) as f64 / 1048576.0;
+                    let w = 1.0 / (joined.diagonal[row] as f64 / 2f64.powi(58)) / 4f64.powi(joined.shift[row] as i32);
+                    first += d * joined.lacked[row] as f64 / 1048576.0 * w;
+                    all += d * (joined.lack[row] + joined.lacked[row]) as f64 / 1048576.0 * w;
+                    most = most.max(d.abs());
+                }
+            }
+            eprintln!("   work {work} first {first:.6} all {all:.6} most {most:.3}");
+        }
+        work > 0
     }
 
     fn remember(&mut self, blocks: &[Block], movers: &[Mover]) {
@@ -346,6 +357,7 @@ impl Island {
         for joined in &mut self.contacts {
             let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
             joined.before = [&block.friction, &block.points[0], &block.points[1]].map(|row| row.impulse[i]);
+            joined.hold = block.hold(i, [joined.before[1], joined.before[2]]);
         }
     }
 
@@ -361,35 +373,47 @@ impl Island {
         }
     }
 
-    /// What the rows that push lack. The `first` time it is chosen which do: those that did, and those that close.
-    fn choose<const BIASED: bool>(&mut self, first: bool, blocks: &[Block], movers: &[Mover], scales: &Scales) {
-        let mut changed = false;
-        self.equations = 0;
-        self.pushes &= !(first && BIASED);
+    /// What the rows lack. Those that yield do so in all, not by step: they are springs. Friction would creep.
+    fn look<const BIASED: bool>(&mut self, blocks: &[Block], movers: &[Mover], scales: &Scales) {
         for joined in &mut self.contacts {
             let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
             let look = block.look(i, movers);
-            let slip = i64::from(limit(round::<28>(look.slip)));
-            let lack = [0, 1].map(|at| lack::<BIASED>(&look, at, self.push, scales));
-            if first {
-                let load = [0, 1].map(|at| block.points[at].impulse[i]);
-                joined.begin(block, i, slip, [0, 1].map(|at| load[at] > 0 || lack[at] < STILL.saturating_neg()));
-            }
+            joined.lack[0] = limit(round::<28>(look.slip)).into();
             for at in 0..2 {
-                self.pushes |= BIASED && joined.active & 2 << at != 0 && look.separation[at] < SLOP.saturating_neg();
-            }
-            changed |= joined.active != joined.solved;
-            joined.solved = joined.active;
-            joined.lack = [slip, lack[0], lack[1]];
-            for row in 0..3 {
-                joined.row[row] = NONE;
-                if joined.active >> row & 1 != 0 {
-                    joined.row[row] = self.equations;
-                    self.equations = self.equations.saturating_add(1);
-                }
+                let impulse = impulse_of(block, i, next(at));
+                let yields = if BIASED { round::<{ YIELDS[1] }>(impulse) } else { 0 };
+                joined.lack[next(at)] = lack::<BIASED>(&look, at, self.push, scales).saturating_add(yields);
+                self.pushes |= BIASED && impulse > 0 && look.separation[at] < SLOP.saturating_neg();
             }
         }
+    }
+
+    /// Which rows are equations: those within their limits, and those that are to leave one. Whether there are any that do.
+    fn choose(&mut self, blocks: &[Block]) -> bool {
+        let (mut changed, mut wants) = (false, false);
+        self.equations = 0;
+        for joined in &mut self.contacts {
+            let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
+            let mut active = 0;
+            for row in (0..3).filter(|row| joined.present >> row & 1 != 0) {
+                let (impulse, lack) = (impulse_of(block, i, row), joined.lack[row]);
+                let [least, most] = joined.limits(row);
+                let free = least < most
+                    && (impulse > least || lack < STILL.saturating_neg())
+                    && (impulse < most || lack > STILL);
+                active |= u8::from(free) << row;
+                wants |= free && lack.saturating_abs() > STILL;
+            }
+            // An impact may have taken the contact.
+            active = if block.bodies[0][i] == block.bodies[1][i] { 0 } else { active };
+            changed |= joined.active != active;
+            joined.active = active;
+            joined.lacked = joined.lack;
+            joined.start = [0, 1, 2].map(|row| impulse_of(block, i, row));
+        }
+        self.number();
         self.factored &= !changed;
+        wants
     }
 
     /// Factors the system of the active rows, if it is another one.
@@ -422,105 +446,81 @@ impl Island {
     }
 
     /// Solves the equations. Whether all of it stayed in its range.
-    fn solve<const BIASED: bool>(&mut self, blocks: &[Block]) -> bool {
+    fn solve(&mut self) -> bool {
         self.solution.clear();
         for joined in &self.contacts {
-            let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
             for row in (0..3).filter(|&row| joined.row[row] != NONE) {
-                let mut lack = i128::from(joined.lack[row]) << 24;
-                if BIASED && row > 0 {
-                    // In all, not in this round: it is a spring. Friction would creep.
-                    lack = lack.saturating_add(i128::from(impulse_of(block, i, row)) << (24 - YIELDS[row]));
-                }
-                self.solution.push(round_shift(lack.saturating_neg(), joined.shift[row]) as i64);
+                let lack = i128::from(joined.lack[row]).saturating_neg() << 24;
+                self.solution.push(round_shift(lack, joined.shift[row]) as i64);
             }
         }
         self.envelope.solve(&mut self.solution)
     }
 
-    /// What was solved, as changes of impulses, and by which part of it the first of them reaches the end of its range.
-    fn apply(&mut self, blocks: &mut [Block], movers: &mut [Mover]) {
-        const WHOLE: i64 = 1 << 30;
-        let mut part = WHOLE;
+    /// Takes rows at a limit that a step would push beyond it out of the equations. Whether there were any.
+    fn block(&mut self) -> bool {
+        let mut blocked = false;
         for joined in &mut self.contacts {
-            let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
+            for row in (0..3).filter(|&row| joined.row[row] != NONE) {
+                let [least, most] = joined.limits(row);
+                let x = self.solution[joined.row[row] as usize];
+                let out = joined.start[row] <= least && x < 0 || joined.start[row] >= most && x > 0;
+                joined.active &= !(u8::from(out) << row);
+                blocked |= out;
+            }
+        }
+        if blocked {
+            self.number();
+            self.factored = false;
+        }
+        blocked
+    }
+
+    /// Numbers the equations.
+    fn number(&mut self) {
+        self.equations = 0;
+        for joined in &mut self.contacts {
             for row in 0..3 {
-                joined.change[row] = 0;
-                if joined.row[row] == NONE {
-                    continue;
+                joined.row[row] = NONE;
+                if joined.active >> row & 1 != 0 {
+                    joined.row[row] = self.equations;
+                    self.equations = self.equations.saturating_add(1);
                 }
+            }
+        }
+    }
+
+    /// Goes a 2^`shorter`th of the way from where the round began, within the limits. Whether that is all of it.
+    fn step(&mut self, shorter: u32, blocks: &mut [Block], movers: &mut [Mover]) -> bool {
+        let mut whole = shorter == 0;
+        for joined in &mut self.contacts {
+            let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
+            joined.change = [0; 3];
+            for row in (0..3).filter(|&row| joined.row[row] != NONE) {
                 let x = i128::from(self.solution[joined.row[row] as usize]);
-                let shift = 82u32.saturating_sub(joined.shift[row]);
+                let shift = 82u32.saturating_sub(joined.shift[row]).saturating_add(shorter);
                 let change = round_shift(x.saturating_mul(joined.diagonal[row].into()), shift) as i64;
-                joined.change[row] = change;
-                let now = impulse_of(block, i, row);
-                let room = sub(IMPULSE_MAX, if change > 0 { now } else { now.saturating_neg() });
-                if change.saturating_abs() > room {
-                    let fits = div(i128::from(room.max(0)) << 30, change.unsigned_abs().into()) as i64;
-                    part = part.min(fits);
-                }
+                let then = joined.start[row].saturating_add(change);
+                let [least, most] = joined.limits(row);
+                whole &= (least..=most).contains(&then);
+                joined.change[row] = sub(clamp(then, least, most), impulse_of(block, i, row));
             }
         }
-        for joined in &mut self.contacts {
-            if part < WHOLE {
-                joined.change = joined.change.map(|change| mul_wide(change, part, 30));
-            }
-            let change = joined.change.map(|change| change as i32);
-            joined.give(blocks, movers, change);
-        }
+        self.give(blocks, movers);
+        whole
     }
 
-    /// How many rows are wrong: they pull, close without pushing, or hold more than friction can. What slides holds all that
-    /// friction can.
-    fn examine<const BIASED: bool>(&mut self, blocks: &mut [Block], movers: &mut [Mover], scales: &Scales) -> u32 {
-        let mut wrong = 0u32;
-        for joined in &mut self.contacts {
-            let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
-            joined.wrong = 0;
-            let load = [0, 1].map(|at| block.points[at].impulse[i]);
-            let idle = joined.present & POINTS & !joined.active;
-            if idle != 0 && block.bodies[0][i] != block.bodies[1][i] {
-                let look = block.look(i, movers);
-                for at in (0..2).filter(|at| idle >> next(*at) & 1 != 0) {
-                    joined.wrong |= if lack::<BIASED>(&look, at, self.push, scales) < STILL.saturating_neg() { 2 << at } else { 0 };
-                }
-            }
-            for (at, &load) in load.iter().enumerate() {
-                joined.wrong |= if load < 0 { 2 << at } else { 0 };
-            }
-            let hold = block.hold(i, load.map(|load| load.max(0)));
-            let drag = impulse_of(block, i, 0);
-            if joined.active & FRICTION != 0 && drag.saturating_abs() > hold {
-                joined.wrong |= FRICTION;
-            } else if joined.slides {
-                joined.give(blocks, movers, [sub(drag.signum().saturating_mul(hold), drag) as i32, 0, 0]);
-            }
-            wrong = wrong.saturating_add(joined.wrong.count_ones());
-        }
-        wrong
-    }
-
-    /// Rows that are wrong change sides, all of them or the last one.
-    fn exchange(&mut self, all: bool, blocks: &mut [Block], movers: &mut [Mover]) {
-        for joined in self.contacts.iter_mut().rev().filter(|joined| joined.wrong != 0) {
-            let rows = if all { joined.wrong } else { 1 << joined.wrong.ilog2() };
-            let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
-            let mut now = [0, 1, 2].map(|row| impulse_of(block, i, row));
-            for row in (1..3).filter(|row| rows >> row & 1 != 0 && joined.active >> row & 1 != 0) {
-                now[row] = 0;
-            }
-            joined.active ^= rows & POINTS;
-            joined.slides |= rows & FRICTION != 0;
-            let sticks = joined.active & POINTS != 0 && !joined.slides;
-            joined.active = joined.active & POINTS | if sticks { joined.present & FRICTION } else { 0 };
-            if !sticks {
-                let hold = block.hold(i, [now[1].max(0) as i32, now[2].max(0) as i32]);
-                now[0] = now[0].signum().saturating_mul(if joined.active == 0 { 0 } else { hold });
-            }
-            let change = [0, 1, 2].map(|row| sub(now[row], impulse_of(block, i, row)) as i32);
-            joined.give(blocks, movers, change);
-            if !all {
-                break;
+    /// Changes impulses.
+    fn give(&self, blocks: &mut [Block], movers: &mut [Mover]) {
+        for joined in self.contacts.iter().filter(|joined| joined.change != [0; 3]) {
+            let (block, i) = (&mut blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
+            let [slide, first, second] = joined.change.map(|change| change as i32);
+            block.give(i, movers, [slide, first, second]);
+            block.friction.impulse[i] = block.friction.impulse[i].saturating_add(slide);
+            for (at, change) in [first, second].into_iter().enumerate() {
+                let impulse = block.points[at].impulse[i].saturating_add(change);
+                block.points[at].impulse[i] = impulse;
+                block.peak[at][i] = block.peak[at][i].max(impulse);
             }
         }
     }
