@@ -1,25 +1,23 @@
 //! Symmetric positive definite systems in integers: L·D·Lᵀ, each row from its first entry on (an envelope).
 //!
-//! A is scaled so that its diagonal is in 1 … 4, and a floor under every pivot bounds all else: |L_ij|·√D_j ≤ √A_ii. A row
-//! that says nothing new has a pivot next to zero; it is eased: [`EASE`] is added to that pivot alone, so what is only
-//! badly conditioned, as a tall stack, stays exact.
+//! A is scaled so that its diagonal is in 1 … 4 and a little above what makes it definite: a floor under every pivot bounds
+//! all else, |L_ij|·√D_j ≤ √A_ii.
 //!
 //! | value | format | bound | why |
 //! |---|---|---|---|
 //! | A, C = L·D | Q58, i64 | 2⁶¹ | \|C_ij\| ≤ √(A_ii·D_j) ≤ 4 |
-//! | D | Q58 | 2⁴⁵ … 2⁶¹ | at least [`EASE`] |
-//! | 1/D | Q44 | 2⁵⁷ | of the above |
+//! | D | Q58 | 2⁴⁴ … 2⁶¹ | at least [`FLOOR`] |
+//! | 1/D | Q44 | 2⁵⁸ | of the above |
 //! | L | Q52 | 2⁶¹ | \|L_ij\| ≤ 2/√D_j ≤ 2⁸ |
 //! | right side, solution | Q44 | 2⁵⁷ (8192) | refused beyond |
 //!
-//! Sums are of at most [`ROWS`] products below 2¹¹⁸, in 128 bits: below 2¹²⁶.
+//! A product of factors stays below √(A_ii·A_jj) with all of its sum, and sums of at most [`ROWS`] products of L and a
+//! solution are below 2⁸·2⁶¹·2⁵⁷ = 2¹²⁶: all fit 128 bits.
 
 /// How many rows a system may have.
 pub(crate) const ROWS: usize = 256;
-/// What is added to a pivot that is less, 2⁻¹³.
-pub(crate) const EASE: i64 = 1 << 45;
-/// A pivot that is negative by more is no rounding: 2⁻²⁴.
-const NOISE: i64 = 1 << 34;
+/// The least pivot, 2⁻¹⁴.
+const FLOOR: i64 = 1 << 44;
 /// The bound of right sides and solutions.
 const FAR: u64 = 1 << 57;
 
@@ -36,8 +34,6 @@ pub(crate) struct Envelope {
     /// The diagonal: A, then D.
     pivots: Vec<i64>,
     inverses: Vec<i64>,
-    /// By row, whether its pivot was raised.
-    eased: Vec<bool>,
 }
 
 /// `value / 2^shift` to nearest and odd. Range: |value| < 2¹²⁶, 1 ≤ shift ≤ 125.
@@ -54,8 +50,7 @@ fn product(a: &[i64], b: &[i64]) -> i128 {
 impl Envelope {
     /// Forgets the system.
     pub(crate) fn clear(&mut self) {
-        let Envelope { first, start, entries, lower, pivots, inverses, eased } = self;
-        eased.clear();
+        let Envelope { first, start, entries, lower, pivots, inverses } = self;
         for column in [first, start] {
             column.clear();
         }
@@ -83,11 +78,10 @@ impl Envelope {
 
     /// Factors the system. Whether it is clearly positive definite.
     pub(crate) fn factor(&mut self) -> bool {
-        let Envelope { first, start, entries, lower, pivots, inverses, eased } = self;
+        let Envelope { first, start, entries, lower, pivots, inverses } = self;
         lower.clear();
         lower.resize(entries.len(), 0);
         inverses.clear();
-        eased.clear();
         if pivots.len() > ROWS {
             return false;
         }
@@ -107,26 +101,18 @@ impl Envelope {
                 *l = rounded(c as i128 * inverse as i128, 50);
             }
             let pivot = pivots[i] - rounded(product(own, below), 52);
-            if pivot < -NOISE {
+            if pivot < FLOOR {
                 return false;
             }
-            let says_nothing = pivot < EASE;
-            eased.push(says_nothing);
-            let pivot = if says_nothing { pivot + EASE + NOISE } else { pivot };
             pivots[i] = pivot;
             inverses.push((((1 << 102) + (pivot as i128 >> 1)) / pivot as i128) as i64);
         }
         true
     }
 
-    /// Whether the last factorisation raised the pivot of a row: then the row is to yield by its unknown times [`EASE`].
-    pub(crate) fn is_eased(&self, row: usize) -> bool {
-        self.eased[row]
-    }
-
     /// Puts the solution in place of a right side. Whether all of it stayed in its range.
     pub(crate) fn solve(&self, x: &mut [i64]) -> bool {
-        let Envelope { first, start, entries: _, lower, pivots: _, inverses, eased: _ } = self;
+        let Envelope { first, start, entries: _, lower, pivots: _, inverses } = self;
         let row = |i: usize| (first[i] as usize, &lower[start[i] as usize..start[i] as usize + i - first[i] as usize]);
         for i in 0..x.len() {
             let (from, l) = row(i);
@@ -205,24 +191,11 @@ mod tests {
         let mut envelope = Envelope::default();
         envelope.push(0, 1 << 58);
         envelope.push(0, 1 << 58);
-        envelope.set(0, (1 << 58) + (1 << 50));
+        envelope.set(0, 1 << 58);
         assert!(!envelope.factor());
         envelope.clear();
         envelope.push(0, 1 << 58);
         assert!(envelope.factor());
         assert!(!envelope.solve(&mut [1 << 60]));
-    }
-
-    #[test]
-    fn a_row_that_says_nothing_new_is_eased() {
-        let mut envelope = Envelope::default();
-        envelope.push(0, 1 << 58);
-        envelope.push(0, 1 << 58);
-        envelope.set(0, 1 << 58);
-        assert!(envelope.factor());
-        assert_eq!([0, 1].map(|row| envelope.is_eased(row)), [false, true]);
-        let mut x = [3 << 44, 3 << 44];
-        assert!(envelope.solve(&mut x));
-        assert!((x[0] - (3 << 44)).abs() < 16 && x[1].abs() < 16, "{x:?}");
     }
 }

@@ -7,6 +7,7 @@
 mod avx2;
 mod color;
 mod direct;
+mod equations;
 mod flight;
 mod impact;
 mod island;
@@ -195,7 +196,7 @@ impl Solver {
             for block in &blocks[..swept] {
                 kernel.warm_start(block, &mut movers.lanes);
             }
-            direct.warm_start(&blocks[swept..], &mut movers.lanes);
+            blocks[swept..].iter().for_each(|block| block.warm_start(&mut movers.lanes));
             for substep in 1..=scales.substeps {
                 movers.begin(substep == 1);
                 for block in &mut blocks[..swept] {
