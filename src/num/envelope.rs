@@ -158,7 +158,7 @@ mod tests {
 
     #[test]
     fn a_solution_put_in_gives_the_right_side_and_the_negative_gives_the_negative() {
-        let size = 40;
+        let size = 40usize;
         let mut envelope = Envelope::default();
         for i in 0..size {
             let first = i.saturating_sub(2);

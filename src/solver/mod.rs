@@ -133,10 +133,9 @@ impl Solver {
         });
         for &at in &*fast {
             let pair = &mut touch.pairs[at as usize];
-            let points = &pair.manifold.points[..pair.manifold.count as usize];
-            let deepest = points.iter().map(|point| point.separation.saturating_neg()).max();
-            pair.met = deepest.is_some_and(|depth| depth >= 0);
-            pair.depth = deepest.unwrap_or(0).max(0).saturating_add(ROUNDING);
+            let deepest = overlap(pair);
+            pair.met = deepest >= 0;
+            pair.depth = deepest.max(0).saturating_add(ROUNDING);
             pair.manifold.count = 0;
         }
         for pair in touch.pairs.iter_mut().filter(|pair| pair.manifold.count > 0) {
@@ -144,7 +143,7 @@ impl Solver {
             places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
             let old = if pair.old == NEW { Contact::default() } else { contacts.get(pair.old as usize) };
             heavy.push(Scales::is_heavy(old.normal));
-            loaded.push(Scales::is_hard(old.normal, old.direct));
+            loaded.push(Scales::is_hard(old.normal, old.direct) || overlap(pair) > scales.deep);
         }
         if !fast.is_empty() {
             timeline.remember(bodies);
@@ -257,6 +256,12 @@ impl Solver {
         contact.direct = seat / LANES >= self.colors.swept;
         contact
     }
+}
+
+/// By how much a pair overlaps, Q32 m; negative by the gap, and nothing is as far as one without points.
+fn overlap(pair: &Pair) -> i64 {
+    let points = &pair.manifold.points[..pair.manifold.count as usize];
+    points.iter().map(|point| point.separation.saturating_neg()).max().unwrap_or(i64::MIN)
 }
 
 /// No less than the speed at which the points of a pair come together, with what forces add: directions left out, for

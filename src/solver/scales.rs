@@ -33,8 +33,9 @@ const FIRM: i64 = 1 << 17;
 /// apart: 1 m/s, 48 fraction bits. For a box at rest on the ground that is 0.016 m/s. What is stiffer must be heavy: with
 /// 2 m/s, 100 kg on 1 kg never come to rest, and on three boxes of 1 kg they walk.
 const HEAVY: i64 = 1 << 48;
-/// The load from which on a contact makes its island hard, as [`HEAVY`]: 1/2 m/s.
-const HARD: i64 = 1 << 47;
+/// The load from which on a contact makes its island hard, as [`HEAVY`]: 3/4 m/s, half of it once it is. A stack of 24 boxes
+/// has it at its foot, the pyramid of 40 rows does not; one of 20 would take five times as long.
+const HARD: i64 = 3 << 46;
 /// The speed with which overlaps are pushed apart at most: 1 m/s, 20 fraction bits.
 const PUSH: i64 = 1 << 20;
 /// The distance at which contacts are looked for: 2 cm, 32 fraction bits.
@@ -74,6 +75,8 @@ pub(crate) struct Scales {
     pub(crate) tick_turn: i64,
     /// What of an overlap is no more than bodies at rest have, Q32 m.
     pub(crate) slack: i64,
+    /// The overlap from which on an island is hard, Q32 m: sweeps would let what is pushed apart fly.
+    pub(crate) deep: i64,
     /// How near is touching, Q32 m.
     pub(crate) touching: i64,
 }
@@ -101,6 +104,7 @@ impl Scales {
             margins: Margins { base: MARGIN << shift, tick: div(1 << 63, tick_rate.into()) as i64 },
             tick_turn: div(TURN_PER_RADIAN_Q64, i128::from(tick_rate).saturating_mul(2)) as i64,
             slack: SLACK << shift,
+            deep: (SLACK << shift).saturating_mul(10),
             touching: i64::from(SLOP) << shift.saturating_add(6),
         }
     }
