@@ -104,8 +104,10 @@ impl Island {
         self.pushes &= !BIASED;
         self.remember(blocks, movers);
         self.look::<BIASED>(blocks, movers, scales);
+        let mut whole = false;
         for round in 0..ROUNDS {
-            if !self.choose(blocks) && round > 0 {
+            if round > 0 && std::env::var("DBG2").is_ok() && self.contacts.len() > 30 { eprintln!("  round {round} whole {whole}"); }
+            if !self.choose(blocks) && whole {
                 break;
             }
             if !self.direct() {
@@ -114,7 +116,7 @@ impl Island {
             }
             let mut leads = false;
             for shorter in 0..HALVINGS {
-                let whole = self.step(shorter, blocks, movers);
+                whole = self.step(shorter, blocks, movers);
                 self.look::<BIASED>(blocks, movers, scales);
                 // All of a Newton step never leads away.
                 leads = whole || !self.rises(blocks);
@@ -128,6 +130,7 @@ impl Island {
             }
         }
         self.hold(blocks, movers);
+        if std::env::var("DBG").is_ok() { eprintln!("n {} BIASED {BIASED} factors {} eqs {}", self.contacts.len(), self.factors, self.solution.len()); }
         true
     }
 
@@ -177,9 +180,9 @@ impl Island {
         }
     }
 
-    /// Which rows are equations: those within their limits, and those that are to leave one. Whether they lack anything.
+    /// Which rows are equations: those within their limits, and those that are to leave one. Whether they are others than before.
     fn choose(&mut self, blocks: &[Block]) -> bool {
-        let (mut changed, mut lacks) = (false, false);
+        let mut changed = false;
         for joined in &mut self.contacts {
             let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
             let mut active = 0;
@@ -194,7 +197,6 @@ impl Island {
                 let down = impulse < most || lack > STILL;
                 let equation = least < most && up && down;
                 active |= u8::from(equation) << row;
-                lacks |= equation && lack.saturating_abs() > STILL;
             }
             changed |= joined.active != active;
             joined.active = active;
@@ -202,7 +204,7 @@ impl Island {
         if changed {
             self.number();
         }
-        lacks
+        changed
     }
 
     /// Solves the equations, without rows at a limit that a step would push beyond it. Whether all of it stayed in its range.

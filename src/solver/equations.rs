@@ -62,7 +62,7 @@ pub(super) struct Island {
     /// Bodies, and their velocities when the solve began.
     pub(super) before: Vec<(u32, [i64; 3])>,
     /// How many factorisations it took in this tick, and whether the last one is that of the equations.
-    factors: u32,
+    pub(super) factors: u32,
     factored: bool,
     /// Whether a row pushed an overlap apart, and how fast one does at most: so that the highest body is not faster than one
     /// contact may make it.
