@@ -76,6 +76,12 @@ impl Envelope {
         self.entries[at] = value;
     }
 
+    /// How many products it takes to factor it, at most.
+    pub(crate) fn work(&self) -> u64 {
+        let width = |(row, &first): (usize, &u32)| (row as u64) - u64::from(first);
+        self.first.iter().enumerate().map(width).map(|width| width * (width + 1) / 2).sum()
+    }
+
     /// Factors the system. Whether it is clearly positive definite.
     pub(crate) fn factor(&mut self) -> bool {
         let Envelope { first, start, entries, lower, pivots, inverses } = self;

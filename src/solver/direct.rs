@@ -18,7 +18,6 @@ use super::mobility::Mobility;
 use super::mover::{Mover, Movers};
 use super::rows::{Block, LANES};
 use super::scales::{SLOP, Scales};
-use crate::num::div;
 use crate::num::lane::{clamp, deeper, limit, mul, next, round, sub};
 use crate::num::round_shift;
 
@@ -27,7 +26,7 @@ const ROUNDS: u32 = 8;
 const HALVINGS: u32 = 12;
 /// How fast a row at its limit may be left to go, Q20: what the rounding of reads makes.
 const STILL: i64 = 16;
-/// How often an island is swept instead, when it has had its share of the tick.
+/// How often an island is swept instead, when it has had its share of the tick or is beyond what numbers hold.
 const SWEEPS: u32 = 4;
 /// With which part of its impulse a normal yields, as a shift.
 pub(super) const YIELD: u32 = 10;
@@ -85,13 +84,19 @@ impl Direct {
         }
     }
 
+    /// Whether the island of one of these places found no end in this tick.
+    pub(crate) fn is_tired(&self, places: [u32; 2]) -> bool {
+        let tired = self.islands[..self.count].iter().filter(|island| island.tired);
+        tired.flat_map(|island| &island.before).any(|(place, _)| places.contains(place))
+    }
+
     /// Solves every hard island. When `BIASED`, overlaps are pushed apart, else what that did to velocities is taken back.
     pub(crate) fn solve<const BIASED: bool>(&mut self, blocks: &mut [Block], movers: &mut [Mover], scales: &Scales) {
         for island in &mut self.islands[..self.count] {
             if !BIASED && !island.pushes {
                 continue;
             }
-            if island.spent() || !island.solve::<BIASED>(blocks, movers, scales) {
+            if island.tired || !island.solve::<BIASED>(blocks, movers, scales) {
                 island.sweep::<BIASED>(blocks, movers, scales);
             }
         }
@@ -105,13 +110,13 @@ impl Island {
         self.remember(blocks, movers);
         self.look::<BIASED>(blocks, movers, scales);
         let mut whole = false;
-        for round in 0..ROUNDS {
-            if round > 0 && std::env::var("DBG2").is_ok() && self.contacts.len() > 30 { eprintln!("  round {round} whole {whole}"); }
+        for _ in 0..ROUNDS {
             if !self.choose(blocks) && whole {
                 break;
             }
             if !self.direct() {
                 self.restore(blocks, movers);
+                self.tired = true;
                 return false;
             }
             let mut leads = false;
@@ -130,7 +135,6 @@ impl Island {
             }
         }
         self.hold(blocks, movers);
-        if std::env::var("DBG").is_ok() { eprintln!("n {} BIASED {BIASED} factors {} eqs {}", self.contacts.len(), self.factors, self.solution.len()); }
         true
     }
 
@@ -233,6 +237,7 @@ impl Island {
     /// Goes a 2^`shorter`th of the way from where the round began, within the limits. Whether that is all of it.
     fn step(&mut self, shorter: u32, blocks: &mut [Block], movers: &mut [Mover]) -> bool {
         let mut whole = shorter == 0;
+        self.takes(self.contacts.len() as u64);
         for joined in &self.contacts {
             let (block, i) = (&mut blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
             let mut change = [0; 3];
@@ -258,7 +263,7 @@ impl Island {
             for row in joined.equations() {
                 let speeds = i128::from(joined.lack[row].saturating_add(joined.lacked[row]));
                 let change = sub(impulse(block, i, row), joined.start[row]);
-                let part = div(speeds.saturating_mul(change.into()) << 40, (joined.diagonal[row] >> 18).into());
+                let part = speeds.saturating_mul(change.into()).saturating_mul(joined.inverse[row].into());
                 work = work.saturating_add(round_shift(part, joined.shift[row].saturating_mul(2)));
             }
         }

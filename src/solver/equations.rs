@@ -8,10 +8,12 @@ use super::direct::{Weight, YIELD};
 use super::rows::{Block, IMPULSE_MAX, LANES};
 use crate::num::envelope::{Envelope, ROWS};
 use crate::num::lane::{add, mul, sub};
-use crate::num::round_shift;
+use crate::num::{div, round_shift};
 
-/// How many factorisations an island may take in a tick; then it is swept.
-const FACTORS: u32 = 512;
+/// How many products an island may take in a tick, and as how many a step counts for each contact: some milliseconds. Then it
+/// is tired.
+const SHARE: u64 = 3_000_000;
+const STEP: u64 = 128;
 /// The greatest ratio of inverse masses of rows, as a power of two of its root.
 const RATIO: u32 = 16;
 /// What is added to the diagonal, as a shift: a normal yields, and friction takes its steps a little short.
@@ -28,9 +30,10 @@ pub(super) struct Joined {
     pub(super) active: u8,
     /// What friction holds at most, by the loads when the solve began, Q20.
     pub(super) hold: i64,
-    /// By row: h less the least of the island, and A_ii.
+    /// By row: h less the least of the island, A_ii, and its inverse, Q30.
     pub(super) shift: [u32; 3],
     pub(super) diagonal: [i64; 3],
+    pub(super) inverse: [i64; 3],
     /// Its part of the couplings; the last is with itself.
     couplings: [u32; 2],
     /// By row, where it is among the equations.
@@ -61,9 +64,11 @@ pub(super) struct Island {
     pub(super) solution: Vec<i64>,
     /// Bodies, and their velocities when the solve began.
     pub(super) before: Vec<(u32, [i64; 3])>,
-    /// How many factorisations it took in this tick, and whether the last one is that of the equations.
-    pub(super) factors: u32,
+    /// How many products it took in this tick, and whether the last factorisation is that of the equations.
+    work: u64,
     factored: bool,
+    /// Whether it has had its share of the tick, or has numbers beyond what formats hold.
+    pub(super) tired: bool,
     /// Whether a row pushed an overlap apart, and how fast one does at most: so that the highest body is not faster than one
     /// contact may make it.
     pub(super) pushes: bool,
@@ -118,7 +123,8 @@ impl Island {
     ) {
         self.contacts.clear();
         self.couplings.clear();
-        (self.factors, self.factored, self.equations, self.pushes) = (0, false, 0, false);
+        (self.work, self.factored, self.equations) = (0, false, 0);
+        (self.pushes, self.tired) = (false, false);
         let least = self.before.iter().map(|&(place, _)| weights[place as usize].shift).min().unwrap_or(0);
         for &(place, _) in &self.before {
             let weight = &mut weights[place as usize];
@@ -145,14 +151,14 @@ impl Island {
         for joined in &mut self.contacts {
             joined.shift = joined.shift.map(|shift| shift.saturating_sub(lowest));
             if (0..3).any(|row| joined.present >> row & 1 != 0 && joined.shift[row] > RATIO) {
-                self.factors = FACTORS;
+                self.tired = true;
             }
         }
     }
 
-    /// Whether it has had its share of the tick, or is beyond what numbers hold.
-    pub(super) fn spent(&self) -> bool {
-        self.factors >= FACTORS
+    /// Counts a step.
+    pub(super) fn takes(&mut self, contacts: u64) {
+        self.work = self.work.saturating_add(contacts.saturating_mul(STEP));
     }
 
     /// The couplings of a contact with those before it, and its own.
@@ -168,6 +174,7 @@ impl Island {
         let entries = entries(joined, joined, blocks, weights);
         self.couplings.push(Coupling { other: self.contacts.len() as u32, entries });
         joined.diagonal = [0, 1, 2].map(|row: usize| entries[row][row]);
+        joined.inverse = joined.diagonal.map(|diagonal| div(1 << 88, diagonal.into()) as i64);
         joined.couplings = [begin, self.couplings.len() as u32];
     }
 
@@ -188,10 +195,9 @@ impl Island {
         if self.factored {
             return true;
         }
-        if usize::from(self.equations) > ROWS || self.spent() {
+        if usize::from(self.equations) > ROWS {
             return false;
         }
-        self.factors = self.factors.saturating_add(1);
         self.envelope.clear();
         for joined in &self.contacts {
             let couplings = &self.couplings[joined.couplings[0] as usize..joined.couplings[1] as usize];
@@ -209,7 +215,8 @@ impl Island {
                 }
             }
         }
-        self.factored = self.envelope.factor();
+        self.work = self.work.saturating_add(self.envelope.work());
+        self.factored = self.work <= SHARE && self.envelope.factor();
         self.factored
     }
 

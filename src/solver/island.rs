@@ -8,6 +8,16 @@ use crate::num::lane::next;
 pub(crate) const MOST: u32 = 80;
 const NONE: u32 = u32::MAX;
 
+/// What a contact says about its island.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Vote {
+    None,
+    /// It bears so much, or overlaps so deep, that the island is hard.
+    Hard,
+    /// The island found no end lately, and is swept whatever it bears.
+    Wait,
+}
+
 /// Which contacts are solved directly.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Islands {
@@ -15,10 +25,10 @@ pub(crate) struct Islands {
     pub(crate) apart: Vec<bool>,
     /// By place of a body: another one of its island, nearer to the one that stands for it.
     leader: Vec<u32>,
-    /// By place, of those that stand for an island: how many contacts it has, whether one of them is hard, and its place
+    /// By place, of those that stand for an island: how many contacts it has, their vote, and its place
     /// among the hard islands.
     count: Vec<u32>,
-    hard: Vec<bool>,
+    hard: Vec<Vote>,
     number: Vec<u32>,
     /// By place: how many contacts lie between a body and what does not move.
     level: Vec<u32>,
@@ -30,30 +40,35 @@ pub(crate) struct Islands {
 }
 
 impl Islands {
-    /// Finds the hard islands. `places`: of each contact's bodies; `free`: by place, what impulses leave as it is; `loaded`:
-    /// by contact, whether its load alone makes its island hard.
-    pub(crate) fn find(&mut self, places: &[[u32; 2]], free: &[bool], loaded: &[bool]) {
+    /// Finds the hard islands. `places`: of each contact's bodies; `free`: by place, what impulses leave as it is; `votes`: by
+    /// contact.
+    pub(crate) fn find(&mut self, places: &[[u32; 2]], free: &[bool], votes: &[Vote]) {
         self.apart.clear();
         self.found = 0;
-        if !loaded.contains(&true) {
+        if !votes.contains(&Vote::Hard) {
             return;
         }
         self.lead(places, free);
         self.count.clear();
         self.count.resize(free.len(), 0);
         self.hard.clear();
-        self.hard.resize(free.len(), false);
+        self.hard.resize(free.len(), Vote::None);
         self.number.clear();
         self.number.resize(free.len(), NONE);
-        for (&pair, &loaded) in places.iter().zip(loaded).filter(|&(&pair, _)| !free[moving(pair, free) as usize]) {
+        for (&pair, &vote) in places.iter().zip(votes).filter(|&(&pair, _)| !free[moving(pair, free) as usize]) {
             let leader = leader_of(&mut self.leader, moving(pair, free)) as usize;
             self.count[leader] = self.count[leader].saturating_add(1);
-            self.hard[leader] |= loaded;
+            let island = &mut self.hard[leader];
+            *island = match (*island, vote) {
+                (Vote::Wait, _) | (_, Vote::Wait) => Vote::Wait,
+                (Vote::Hard, _) | (_, Vote::Hard) => Vote::Hard,
+                _ => Vote::None,
+            };
         }
         self.apart.resize(places.len(), false);
         for (at, &pair) in places.iter().enumerate() {
             let leader = leader_of(&mut self.leader, moving(pair, free)) as usize;
-            if free[leader] || !self.hard[leader] || self.count[leader] > MOST {
+            if free[leader] || self.hard[leader] != Vote::Hard || self.count[leader] > MOST {
                 continue;
             }
             if self.number[leader] == NONE {

@@ -32,7 +32,7 @@ use color::Colors;
 use direct::Direct;
 use flight::TICK;
 pub use impact::{Impact, ImpactError, Striker, impact};
-use island::Islands;
+use island::{Islands, Vote};
 use kernel::Kernel;
 pub(crate) use mobility::Mobility;
 use mover::Movers;
@@ -48,6 +48,9 @@ use timeline::{Stage, Timeline};
 /// better and a tick takes 1.6 times as long.
 const RELAX: u32 = 5;
 
+/// For how many ticks an island is swept after a direct solve found no end: a second, 60 times in a minute.
+const WAIT: u8 = 60;
+
 /// What two ways of computing how far two bodies overlap may differ by: 10 nm, Q32 m.
 const ROUNDING: i64 = 43;
 
@@ -60,10 +63,12 @@ pub(crate) struct Solver {
     movers: Movers,
     before: Vec<[i64; 6]>,
     free: Vec<bool>,
-    /// By contact: the places of its bodies among the movers, whether it is heavy, and whether its load makes its island hard.
+    /// By contact: the places of its bodies among the movers, whether it is heavy, for how many ticks its island is swept yet
+    /// whatever it bears, and what it says of that.
     places: Vec<[u32; 2]>,
     heavy: Vec<bool>,
-    loaded: Vec<bool>,
+    waits: Vec<u8>,
+    votes: Vec<Vote>,
     islands: Islands,
     direct: Direct,
     /// Pairs that may strike.
@@ -98,7 +103,8 @@ impl Solver {
             free,
             places,
             heavy,
-            loaded,
+            waits,
+            votes,
             islands,
             direct,
             fast,
@@ -111,7 +117,8 @@ impl Solver {
         timeline.clear(bodies.cold.len());
         places.clear();
         heavy.clear();
-        loaded.clear();
+        waits.clear();
+        votes.clear();
         fast.clear();
         for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !pair.sensor) {
             let swings = || swings(pair, bodies, drive, mobilities, scales);
@@ -143,14 +150,16 @@ impl Solver {
             places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
             let old = if pair.old == NEW { Contact::default() } else { contacts.get(pair.old as usize) };
             heavy.push(Scales::is_heavy(old.normal));
-            loaded.push(Scales::is_hard(old.normal, old.direct) || overlap(pair) > scales.deep);
+            let hard = || Scales::is_hard(old.normal, old.mode == 1) || overlap(pair) > scales.deep;
+            waits.push(old.mode.saturating_sub(1));
+            votes.push(if old.mode > 1 { Vote::Wait } else if hard() { Vote::Hard } else { Vote::None });
         }
         if !fast.is_empty() {
             timeline.remember(bodies);
         }
         movers.remember(bodies, before);
         movers.yielding(mobilities, free);
-        islands.find(places, free, loaded);
+        islands.find(places, free, votes);
         colors.assign(places, free, heavy, &islands.apart);
         blocks.resize_with(colors.blocks, Block::default);
         blocks.iter_mut().for_each(Block::clear);
@@ -253,7 +262,13 @@ impl Solver {
         }
         contact.normal = [0, 1].map(|at| block.points[at].carried(i));
         contact.tangent = block.friction.carried(i);
-        contact.direct = seat / LANES >= self.colors.swept;
+        contact.mode = match seat / LANES < self.colors.swept {
+            true => self.waits[pair.row as usize],
+            false if self.direct.is_tired([0, 1].map(|body: usize| block.bodies[body][i])) => WAIT,
+            false => 1,
+        };
+        // The last tick of waiting is followed by sweeps.
+        contact.mode = if seat / LANES < self.colors.swept && contact.mode == 1 { 0 } else { contact.mode };
         contact
     }
 }
