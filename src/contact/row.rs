@@ -16,7 +16,8 @@ pub(crate) struct Contact {
     pub(crate) touching: bool,
     /// Whether one of them is a sensor: then there are no points.
     pub(crate) sensor: bool,
-    /// How it is solved: 0 by sweeps, 1 directly, and from 2 on by sweeps for so many ticks because that found no end.
+    /// How it is solved: 0 by sweeps, from 1 on directly, the more the longer that has been laborious, and 255 by sweeps as
+    /// long as it lasts, because it was for too long.
     pub(crate) mode: u8,
     /// How many of the points count.
     pub(crate) count: u8,

@@ -28,6 +28,10 @@ const HALVINGS: u32 = 12;
 const STILL: i64 = 16;
 /// How often an island is swept instead, when it has had its share of the tick or is beyond what numbers hold.
 const SWEEPS: u32 = 4;
+/// For how many ticks on end an island may be laborious, and what its contacts keep of it then: they are swept as long as
+/// they last. If it were tried again after some seconds, heaps would breathe.
+const PATIENCE: u8 = 30;
+pub(super) const GIVEN_UP: u8 = u8::MAX;
 /// With which part of its impulse a normal yields, as a shift.
 pub(super) const YIELD: u32 = 10;
 
@@ -54,6 +58,7 @@ impl Direct {
         &mut self,
         islands: &Islands,
         places: &[[u32; 2]],
+        modes: &[u8],
         seats: &[u32],
         blocks: &[Block],
         movers: &Movers,
@@ -71,6 +76,7 @@ impl Direct {
         self.weights.resize(movers.lanes.len(), Weight::default());
         for (island, (members, depth)) in self.islands.iter_mut().zip(islands.iter()) {
             island.push = scales.push.checked_div(depth.into()).unwrap_or(scales.push);
+            island.mode = members.iter().map(|&at| modes[at as usize]).max().unwrap_or(0).max(1);
             island.before.clear();
             for &place in members.iter().flat_map(|&at| &places[at as usize]).filter(|&&place| place != 0) {
                 let mobility = &mobilities[movers.slot(place)];
@@ -84,10 +90,14 @@ impl Direct {
         }
     }
 
-    /// Whether the island of one of these places found no end in this tick.
-    pub(crate) fn is_tired(&self, places: [u32; 2]) -> bool {
-        let tired = self.islands[..self.count].iter().filter(|island| island.tired);
-        tired.flat_map(|island| &island.before).any(|(place, _)| places.contains(place))
+    /// How contacts of the island of one of these places were solved, see `Contact::mode`.
+    pub(crate) fn mode(&self, places: [u32; 2]) -> u8 {
+        let of = |island: &&Island| island.before.iter().any(|(place, _)| places.contains(place));
+        self.islands[..self.count].iter().find(of).map_or(1, |island| match island.is_laborious() {
+            true if island.mode >= PATIENCE => GIVEN_UP,
+            true => island.mode.saturating_add(1),
+            false => 1,
+        })
     }
 
     /// Solves every hard island. When `BIASED`, overlaps are pushed apart, else what that did to velocities is taken back.
@@ -158,7 +168,8 @@ impl Island {
         for joined in &self.contacts {
             let (block, i) = (&mut blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
             let [slide, first, second] = joined.before.map(|impulse| impulse as i32);
-            (block.friction.impulse[i], block.points[0].impulse[i], block.points[1].impulse[i]) = (slide, first, second);
+            (block.friction.impulse[i], block.points[0].impulse[i], block.points[1].impulse[i]) =
+                (slide, first, second);
         }
     }
 

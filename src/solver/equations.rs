@@ -10,9 +10,10 @@ use crate::num::envelope::{Envelope, ROWS};
 use crate::num::lane::{add, mul, sub};
 use crate::num::{div, round_shift};
 
-/// How many products an island may take in a tick, and as how many a step counts for each contact: some milliseconds. Then it
-/// is tired.
-const SHARE: u64 = 3_000_000;
+/// How many products an island may take in a tick: some milliseconds; then it is tired. With as many as [`LABOUR`] the tick was
+/// laborious. A step counts as [`STEP`] for each contact.
+const SHARE: u64 = 12_000_000;
+const LABOUR: u64 = 1_000_000;
 const STEP: u64 = 128;
 /// The greatest ratio of inverse masses of rows, as a power of two of its root.
 const RATIO: u32 = 16;
@@ -69,6 +70,8 @@ pub(super) struct Island {
     factored: bool,
     /// Whether it has had its share of the tick, or has numbers beyond what formats hold.
     pub(super) tired: bool,
+    /// How its contacts were solved.
+    pub(super) mode: u8,
     /// Whether a row pushed an overlap apart, and how fast one does at most: so that the highest body is not faster than one
     /// contact may make it.
     pub(super) pushes: bool,
@@ -154,6 +157,11 @@ impl Island {
                 self.tired = true;
             }
         }
+    }
+
+    /// Whether it took much of this tick.
+    pub(super) fn is_laborious(&self) -> bool {
+        self.work > LABOUR
     }
 
     /// Counts a step.

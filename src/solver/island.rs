@@ -14,8 +14,8 @@ pub(crate) enum Vote {
     None,
     /// It bears so much, or overlaps so deep, that the island is hard.
     Hard,
-    /// The island found no end lately, and is swept whatever it bears.
-    Wait,
+    /// It is not to be solved directly, whatever it bears.
+    Sweep,
 }
 
 /// Which contacts are solved directly.
@@ -60,7 +60,7 @@ impl Islands {
             self.count[leader] = self.count[leader].saturating_add(1);
             let island = &mut self.hard[leader];
             *island = match (*island, vote) {
-                (Vote::Wait, _) | (_, Vote::Wait) => Vote::Wait,
+                (Vote::Sweep, _) | (_, Vote::Sweep) => Vote::Sweep,
                 (Vote::Hard, _) | (_, Vote::Hard) => Vote::Hard,
                 _ => Vote::None,
             };
@@ -143,7 +143,8 @@ fn order(members: &mut [u32], places: &[[u32; 2]], free: &[bool], level: &mut [u
             }
         }
     }
-    let levels = |at: u32| places[at as usize].map(|place| if free[place as usize] { 0 } else { level[place as usize] });
+    let levels =
+        |at: u32| places[at as usize].map(|place| if free[place as usize] { 0 } else { level[place as usize] });
     members.sort_unstable_by_key(|&at| {
         let levels = levels(at);
         (levels[0].max(levels[1]), levels[0].min(levels[1]), at)

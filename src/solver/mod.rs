@@ -1,7 +1,8 @@
 //! The contact solver: substepped, soft, in mass-normalised rows.
 //!
 //! A tick: rows from manifolds, last tick's impulses, then in each substep forces, a sweep with soft rows, positions,
-//! impacts at their times, a sweep without. What comes together fast has no rows: it strikes (`timeline`).
+//! impacts at their times, a sweep without. What comes together fast has no rows: it strikes (`timeline`). Islands of
+//! which a contact bears far more than its bodies weigh are solved directly instead of swept (`direct`).
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -29,7 +30,7 @@ use crate::contact::{Collision, Contact, Contacts, NEW, Pair, Touch};
 use crate::motion::{Drive, Fault};
 use crate::num::{cross, dot, mul};
 use color::Colors;
-use direct::Direct;
+use direct::{Direct, GIVEN_UP};
 use flight::TICK;
 pub use impact::{Impact, ImpactError, Striker, impact};
 use island::{Islands, Vote};
@@ -48,9 +49,6 @@ use timeline::{Stage, Timeline};
 /// better and a tick takes 1.6 times as long.
 const RELAX: u32 = 5;
 
-/// For how many ticks an island is swept after a direct solve found no end: a second, 60 times in a minute.
-const WAIT: u8 = 60;
-
 /// What two ways of computing how far two bodies overlap may differ by: 10 nm, Q32 m.
 const ROUNDING: i64 = 43;
 
@@ -63,11 +61,11 @@ pub(crate) struct Solver {
     movers: Movers,
     before: Vec<[i64; 6]>,
     free: Vec<bool>,
-    /// By contact: the places of its bodies among the movers, whether it is heavy, for how many ticks its island is swept yet
-    /// whatever it bears, and what it says of that.
+    /// By contact: the places of its bodies among the movers, whether it is heavy, how it was solved, and what it says of how its
+    /// island is to be.
     places: Vec<[u32; 2]>,
     heavy: Vec<bool>,
-    waits: Vec<u8>,
+    modes: Vec<u8>,
     votes: Vec<Vote>,
     islands: Islands,
     direct: Direct,
@@ -103,7 +101,7 @@ impl Solver {
             free,
             places,
             heavy,
-            waits,
+            modes,
             votes,
             islands,
             direct,
@@ -117,7 +115,7 @@ impl Solver {
         timeline.clear(bodies.cold.len());
         places.clear();
         heavy.clear();
-        waits.clear();
+        modes.clear();
         votes.clear();
         fast.clear();
         for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !pair.sensor) {
@@ -150,9 +148,15 @@ impl Solver {
             places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
             let old = if pair.old == NEW { Contact::default() } else { contacts.get(pair.old as usize) };
             heavy.push(Scales::is_heavy(old.normal));
-            let hard = || Scales::is_hard(old.normal, old.mode == 1) || overlap(pair) > scales.deep;
-            waits.push(old.mode.saturating_sub(1));
-            votes.push(if old.mode > 1 { Vote::Wait } else if hard() { Vote::Hard } else { Vote::None });
+            let hard = || Scales::is_hard(old.normal, old.mode > 0) || overlap(pair) > scales.deep;
+            modes.push(old.mode);
+            votes.push(if old.mode == GIVEN_UP {
+                Vote::Sweep
+            } else if hard() {
+                Vote::Hard
+            } else {
+                Vote::None
+            });
         }
         if !fast.is_empty() {
             timeline.remember(bodies);
@@ -176,7 +180,7 @@ impl Solver {
             joint.write(block, seat % LANES, &old, pair.friction, scales);
             block.heavy |= u8::from(heavy[row]) << (seat % LANES);
         }
-        direct.build(islands, places, &colors.seats, blocks, movers, mobilities, scales);
+        direct.build(islands, places, modes, &colors.seats, blocks, movers, mobilities, scales);
     }
 
     /// Impacts and substeps, after the bodies have moved as if nothing touched them; bodies that were struck or pushed are
@@ -190,8 +194,9 @@ impl Solver {
         drive: &Drive,
         faults: &mut Vec<Fault>,
     ) {
-        let Solver { mobilities, scales, movers, before, places, direct, fast, timeline, colors, blocks, kernel, .. } =
-            self;
+        let Solver {
+            mobilities, scales, movers, before, places, direct, fast, timeline, colors, blocks, kernel, ..
+        } = self;
         let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[] };
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
@@ -263,12 +268,15 @@ impl Solver {
         contact.normal = [0, 1].map(|at| block.points[at].carried(i));
         contact.tangent = block.friction.carried(i);
         contact.mode = match seat / LANES < self.colors.swept {
-            true => self.waits[pair.row as usize],
-            false if self.direct.is_tired([0, 1].map(|body: usize| block.bodies[body][i])) => WAIT,
-            false => 1,
+            true => {
+                if self.modes[pair.row as usize] == GIVEN_UP {
+                    GIVEN_UP
+                } else {
+                    0
+                }
+            }
+            false => self.direct.mode([0, 1].map(|body: usize| block.bodies[body][i])),
         };
-        // The last tick of waiting is followed by sweeps.
-        contact.mode = if seat / LANES < self.colors.swept && contact.mode == 1 { 0 } else { contact.mode };
         contact
     }
 }
