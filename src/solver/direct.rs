@@ -44,6 +44,14 @@ pub(crate) struct Direct {
     weights: Vec<Weight>,
 }
 
+/// By contact: the places of its bodies, how it was solved, and where it sits among the blocks.
+pub(crate) struct Rows<'r> {
+    pub(crate) places: &'r [[u32; 2]],
+    pub(crate) modes: &'r [u8],
+    pub(crate) seats: &'r [u32],
+    pub(crate) blocks: &'r [Block],
+}
+
 /// How a body yields: 1/m = `w`·2^-`shift`, and τ.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Weight {
@@ -57,14 +65,12 @@ impl Direct {
     pub(crate) fn build(
         &mut self,
         islands: &Islands,
-        places: &[[u32; 2]],
-        modes: &[u8],
-        seats: &[u32],
-        blocks: &[Block],
+        rows: &Rows<'_>,
         movers: &Movers,
         mobilities: &[Mobility],
         scales: &Scales,
     ) {
+        let Rows { places, modes, seats, blocks } = *rows;
         self.count = islands.iter().len();
         if self.count == 0 {
             return;

@@ -30,7 +30,7 @@ use crate::contact::{Collision, Contact, Contacts, NEW, Pair, Touch};
 use crate::motion::{Drive, Fault};
 use crate::num::{cross, dot, mul};
 use color::Colors;
-use direct::{Direct, GIVEN_UP};
+use direct::{Direct, GIVEN_UP, Rows};
 use flight::TICK;
 pub use impact::{Impact, ImpactError, Striker, impact};
 use island::{Islands, Vote};
@@ -180,7 +180,8 @@ impl Solver {
             joint.write(block, seat % LANES, &old, pair.friction, scales);
             block.heavy |= u8::from(heavy[row]) << (seat % LANES);
         }
-        direct.build(islands, places, modes, &colors.seats, blocks, movers, mobilities, scales);
+        let rows = Rows { places, modes, seats: &colors.seats, blocks };
+        direct.build(islands, &rows, movers, mobilities, scales);
     }
 
     /// Impacts and substeps, after the bodies have moved as if nothing touched them; bodies that were struck or pushed are
