@@ -148,15 +148,8 @@ impl Solver {
             places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
             let old = if pair.old == NEW { Contact::default() } else { contacts.get(pair.old as usize) };
             heavy.push(Scales::is_heavy(old.normal));
-            let hard = || Scales::is_hard(old.normal, old.mode > 0) || overlap(pair) > scales.deep;
             modes.push(old.mode);
-            votes.push(if old.mode == GIVEN_UP {
-                Vote::Sweep
-            } else if hard() {
-                Vote::Hard
-            } else {
-                Vote::None
-            });
+            votes.push(vote(pair, &old, bodies, mobilities, scales));
         }
         if !fast.is_empty() {
             timeline.remember(bodies);
@@ -279,6 +272,23 @@ impl Solver {
             false => self.direct.mode([0, 1].map(|body: usize| block.bodies[body][i])),
         };
         contact
+    }
+}
+
+/// What a pair says about how its island is to be solved. What a kinematic body presses while it moves may have no solution.
+fn vote(pair: &Pair, old: &Contact, bodies: &Bodies, mobilities: &[Mobility], scales: &Scales) -> Vote {
+    let hard = Scales::is_hard(old.normal, old.mode > 0) || overlap(pair) > scales.deep;
+    let presses = |&slot: &u32| {
+        let (at, mobility) = (slot as usize, &mobilities[slot as usize]);
+        let v = bodies.velocity(at);
+        let speeds = [v.x.to_bits(), v.y.to_bits(), bodies.omega.get(at).to_bits()];
+        !mobility.moves() && !mobility.fixed && speeds != [0; 3]
+    };
+    match hard {
+        _ if old.mode == GIVEN_UP => Vote::Sweep,
+        true if pair.bodies.iter().any(presses) => Vote::Sweep,
+        true => Vote::Hard,
+        false => Vote::None,
     }
 }
 
