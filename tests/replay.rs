@@ -597,7 +597,7 @@ fn the_format_is_as_documented() {
     game.set_user_data(TWO, 19).expect("accepted");
     forge = forge.with_commands(0x04, game.world().hash(), &set_user_data(TWO, 19));
     assert_eq!(game.finish().expect("it can be written"), forge.end(3));
-    assert_eq!(REPLAY_VERSION, 1);
+    assert_eq!(REPLAY_VERSION, 2);
 }
 
 #[test]

@@ -361,7 +361,8 @@ fn waking_adds_no_energy() {
         "{wakes} wakings; gained in one of them {waking:.1e} J, in a tick {most:.1e}, without sleeping {without:.1e}"
     );
     assert_eq!(none, 0);
-    assert!(wakes > 5 && waking < 0.01 && most < 2.0 * without);
+    // What wakes them strikes in the same tick, and overlaps are pushed apart in any.
+    assert!(wakes > 5 && waking < without && most < 2.0 * without);
 }
 
 #[test]
@@ -671,6 +672,7 @@ fn twins_sleep_and_wake_alike() {
             480 => world.destroy_body(BodyId { index: 12, generation: 0 }).expect("accepted"),
             520 => world.put_to_sleep(id).expect("accepted"),
             540 => world.set_gravity(acc(1.0, -9.0)).expect("accepted"),
+            700 => drop(add(world, moving(solid(-1.0, 8.0, disc(0.4)), 0.0, -9.0))),
             _ => {}
         }
     };

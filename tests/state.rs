@@ -286,7 +286,7 @@ fn what_is_no_save_is_refused_in_these_words() {
         bytes
     };
     assert_eq!(text(&changed(8, 1)), "saved in format version 1, this build reads version 4");
-    assert_eq!(text(&changed(12, 7)), "saved under arithmetic law 7, this build computes by law 4");
+    assert_eq!(text(&changed(12, 7)), "saved under arithmetic law 7, this build computes by law 5");
     let mut longer = save.clone();
     longer.push(0);
     assert_eq!(text(&longer), format!("unexpected bytes after the end at byte {}", save.len()));

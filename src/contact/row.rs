@@ -16,6 +16,9 @@ pub(crate) struct Contact {
     pub(crate) touching: bool,
     /// Whether one of them is a sensor: then there are no points.
     pub(crate) sensor: bool,
+    /// How it is solved: 0 by sweeps, from 1 on directly, the more the longer that has been laborious, and 255 by sweeps as
+    /// long as it lasts, because it was for too long.
+    pub(crate) mode: u8,
     /// How many of the points count.
     pub(crate) count: u8,
     /// Which features the points are of.
@@ -29,11 +32,11 @@ pub(crate) struct Contact {
 const WORDS: usize = 6;
 
 impl Contact {
-    /// As 64-bit words: ids, then flags, count and features by bytes from the lowest, then impulses.
+    /// As 64-bit words: ids, then flags, count, features and mode by bytes from the lowest, then impulses.
     fn pack(&self) -> [u64; WORDS] {
-        let Contact { a, b, touching, sensor, count, ids, normal, tangent } = self;
+        let Contact { a, b, touching, sensor, mode, count, ids, normal, tangent } = self;
         let id = |id: &ColliderId| u64::from(id.generation) << 32 | u64::from(id.index);
-        let flags = [u8::from(*touching), u8::from(*sensor), *count, ids[0], ids[1], 0, 0, 0];
+        let flags = [u8::from(*touching), u8::from(*sensor), *count, ids[0], ids[1], *mode, 0, 0];
         let [n0, n1] = normal.map(|bits| bits as u64);
         [id(a), id(b), u64::from_le_bytes(flags), n0, n1, *tangent as u64]
     }
@@ -46,6 +49,7 @@ impl Contact {
             b: id(b),
             touching: flags[0] != 0,
             sensor: flags[1] != 0,
+            mode: flags[5],
             count: flags[2],
             ids: [flags[3], flags[4]],
             normal: [n0 as i64, n1 as i64],
@@ -67,7 +71,7 @@ impl Contact {
     fn check(&self) -> Result<(), &'static str> {
         let used = self.count as usize;
         let unused = (used.min(2)..2).all(|i| self.ids[i] == 0 && self.normal[i] == 0);
-        let unused = unused && (used > 0 || self.tangent == 0);
+        let unused = unused && (used > 0 || self.tangent == 0 && self.mode == 0);
         let bounded = |bits: i64| bits.unsigned_abs() <= 1 << 60;
         let normals = self.normal.iter().all(|&n| n >= 0 && bounded(n));
         if used > 2 || !unused || !normals || !bounded(self.tangent) || self.a.index >= self.b.index {
@@ -180,6 +184,7 @@ impl Record for Contacts {
                 d.field("b", |d| a.b.diff(&b.b, d));
                 d.field("touching", |d| a.touching.diff(&b.touching, d));
                 d.field("sensor", |d| a.sensor.diff(&b.sensor, d));
+                d.field("mode", |d| a.mode.diff(&b.mode, d));
                 d.field("count", |d| a.count.diff(&b.count, d));
                 let velocity = crate::num::Velocity::from_bits;
                 d.field("tangent", |d| velocity(a.tangent).diff(&velocity(b.tangent), d));

@@ -42,6 +42,7 @@
 
 mod angle;
 pub mod decimal;
+pub(crate) mod envelope;
 mod float;
 pub(crate) mod lane;
 mod quantity;

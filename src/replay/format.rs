@@ -8,7 +8,7 @@ use std::io::{Read, Write};
 use twox_hash::{XxHash3_64, xxhash3_64};
 
 /// The format version of replays.
-pub const REPLAY_VERSION: u32 = 1;
+pub const REPLAY_VERSION: u32 = 2;
 
 const MAGIC: &[u8; 8] = b"TAMIAS-R";
 const HEADER: usize = 32;

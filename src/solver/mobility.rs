@@ -74,6 +74,11 @@ impl Mobility {
         Weight { mantissa: self.mantissa, exponent: self.exponent, turning }
     }
 
+    /// 1/m as a ratio's part: `w·2^-shift`, `w` of 49 bits; 0 of what impulses do not move.
+    pub(crate) fn inverse_mass(&self) -> (i64, u32) {
+        if self.moves() { (div(1 << 82, self.mantissa.into()) as i64, self.exponent) } else { (0, 0) }
+    }
+
     /// Whether impulses move it.
     pub(crate) fn moves(&self) -> bool {
         self.mantissa != 0

@@ -1,13 +1,18 @@
 //! The contact solver: substepped, soft, in mass-normalised rows.
 //!
 //! A tick: rows from manifolds, last tick's impulses, then in each substep forces, a sweep with soft rows, positions,
-//! impacts at their times, a sweep without. What comes together fast has no rows: it strikes (`timeline`).
+//! impacts at their times, a sweep without. What comes together fast has no rows: it strikes (`timeline`). Islands of
+//! which a contact bears far more than its bodies weigh are solved directly instead of swept (`direct`).
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 mod color;
+mod direct;
+mod equations;
+mod fast;
 mod flight;
 mod impact;
+mod island;
 mod kernel;
 mod mobility;
 mod mover;
@@ -25,17 +30,18 @@ mod turning;
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Contact, Contacts, NEW, Pair, Touch};
 use crate::motion::{Drive, Fault};
-use crate::num::{cross, dot, mul};
 use color::Colors;
+use direct::{Direct, GIVEN_UP, Rows};
+use fast::{strikes, swings};
 use flight::TICK;
 pub use impact::{Impact, ImpactError, Striker, impact};
+use island::{Islands, Vote, vote};
 use kernel::Kernel;
 pub(crate) use mobility::Mobility;
 use mover::Movers;
 use prepare::Joint;
 use rows::{Block, LANES};
 pub(crate) use scales::Scales;
-use scales::weight;
 use timeline::{Settled, Stage, Timeline};
 use turning::{Turning, turns};
 
@@ -57,9 +63,14 @@ pub(crate) struct Solver {
     movers: Movers,
     before: Vec<[i64; 6]>,
     free: Vec<bool>,
-    /// By contact: the places of its bodies among the movers, and whether it is heavy.
+    /// By contact: the places of its bodies among the movers, whether it is heavy, how it was solved, and what it says of how its
+    /// island is to be.
     places: Vec<[u32; 2]>,
     heavy: Vec<bool>,
+    modes: Vec<u8>,
+    votes: Vec<Vote>,
+    islands: Islands,
+    direct: Direct,
     /// Pairs that may strike.
     fast: Vec<u32>,
     /// Pairs that turn so fast that their rows are made anew in each substep.
@@ -94,6 +105,10 @@ impl Solver {
             free,
             places,
             heavy,
+            modes,
+            votes,
+            islands,
+            direct,
             fast,
             turning,
             timeline,
@@ -105,6 +120,8 @@ impl Solver {
         timeline.clear(bodies.cold.len());
         places.clear();
         heavy.clear();
+        modes.clear();
+        votes.clear();
         fast.clear();
         turning.clear();
         for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !pair.sensor) {
@@ -127,16 +144,18 @@ impl Solver {
         });
         for &at in &*fast {
             let pair = &mut touch.pairs[at as usize];
-            let points = &pair.manifold.points[..pair.manifold.count as usize];
-            let deepest = points.iter().map(|point| point.separation.saturating_neg()).max();
-            pair.met = deepest.is_some_and(|depth| depth >= 0);
-            pair.depth = deepest.unwrap_or(0).max(0).saturating_add(ROUNDING);
+            let deepest = overlap(pair);
+            pair.met = deepest >= 0;
+            pair.depth = deepest.max(0).saturating_add(ROUNDING);
             pair.manifold.count = 0;
         }
         for pair in touch.pairs.iter_mut().filter(|pair| pair.manifold.count > 0) {
             pair.row = places.len() as u32;
             places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
-            heavy.push(pair.old != NEW && Scales::is_heavy(contacts.get(pair.old as usize).normal));
+            let old = if pair.old == NEW { Contact::default() } else { contacts.get(pair.old as usize) };
+            heavy.push(Scales::is_heavy(old.normal));
+            modes.push(old.mode);
+            votes.push(vote(pair, &old, bodies, mobilities, scales));
         }
         if movers.turns {
             let turn = |pair: &Pair| pair.row != NEW && turns(pair, bodies, mobilities, scales);
@@ -148,7 +167,8 @@ impl Solver {
         }
         movers.remember(bodies, before);
         movers.yielding(mobilities, free);
-        colors.assign(places, free, heavy);
+        islands.find(places, free, votes);
+        colors.assign(places, free, heavy, &islands.apart);
         blocks.resize_with(colors.blocks, Block::default);
         blocks.iter_mut().for_each(Block::clear);
 
@@ -164,6 +184,8 @@ impl Solver {
             joint.write(block, seat % LANES, &old, pair.friction, scales);
             block.heavy |= u8::from(heavy[row]) << (seat % LANES);
         }
+        let rows = Rows { places, modes, seats: &colors.seats, blocks };
+        direct.build(islands, &rows, movers, mobilities, scales);
     }
 
     /// Impacts and substeps, after the bodies have moved as if nothing touched them; bodies that were struck or pushed are
@@ -184,6 +206,7 @@ impl Solver {
             before,
             free,
             places,
+            direct,
             fast,
             turning,
             timeline,
@@ -200,20 +223,26 @@ impl Solver {
             timeline.run([0, TICK], &stage, movers, faults);
         } else {
             movers.take_kicks(bodies, mobilities, scales);
-            for block in blocks.iter() {
+            let swept = colors.swept;
+            for block in &blocks[..swept] {
                 kernel.warm_start(block, &mut movers.lanes);
             }
+            blocks[swept..].iter().for_each(|block| block.warm_start(&mut movers.lanes));
             for substep in 1..=scales.substeps {
                 movers.begin(substep == 1);
                 for &pair in &*turning {
                     let anew = Turning { bodies, colliders, mobilities, scales, before };
                     let pair = &mut touch.pairs[pair as usize];
                     let seat = colors.seats[pair.row as usize] as usize;
+                    if colors.is_apart(seat / LANES) {
+                        continue;
+                    }
                     anew.renew(pair, places[pair.row as usize], &mut blocks[seat / LANES], seat % LANES, movers);
                 }
-                for block in blocks.iter_mut() {
+                for (_, block) in blocks.iter_mut().enumerate().filter(|&(at, _)| !colors.is_apart(at)) {
                     kernel.solve::<true>(block, u8::MAX, &mut movers.lanes, scales);
                 }
+                direct.solve::<true>(blocks, &mut movers.lanes, scales);
                 movers.drift(scales);
                 let seats = &colors.seats;
                 let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats, blocks };
@@ -244,13 +273,14 @@ impl Solver {
                     block.backdate(i, &movers.lanes);
                 }
                 let all = substep % RELAX == 0 || substep == scales.substeps;
-                for block in &mut *blocks {
+                for (_, block) in blocks.iter_mut().enumerate().filter(|&(at, _)| !colors.is_apart(at)) {
                     let lanes = if all { u8::MAX } else { block.pushes | block.heavy };
                     if lanes == 0 {
                         continue;
                     }
                     kernel.solve::<false>(block, lanes, &mut movers.lanes, scales);
                 }
+                direct.solve::<false>(blocks, &mut movers.lanes, scales);
             }
             for (row, &places) in places.iter().enumerate() {
                 let seat = colors.seats[row] as usize;
@@ -287,79 +317,20 @@ impl Solver {
         }
         contact.normal = [0, 1].map(|at| block.points[at].carried(i));
         contact.tangent = block.friction.carried(i);
+        contact.mode = match self.modes.get(pair.row as usize) {
+            _ if manifold.count == 0 => 0,
+            _ if self.colors.is_apart(seat / LANES) => {
+                self.direct.mode([0, 1].map(|body: usize| block.bodies[body][i]))
+            }
+            Some(&GIVEN_UP) => GIVEN_UP,
+            _ => 0,
+        };
         contact
     }
 }
 
-/// No less than the speed at which the points of a pair come together, with what forces add: directions left out, for
-/// pairs that are clearly slower than what strikes.
-fn fastest(pair: &Pair, between: [i64; 2], v: [i64; 2], omega: [i64; 2], gain: [[i64; 2]; 2]) -> i64 {
-    let add = |sum: i64, c: i64| sum.saturating_add(c.saturating_abs());
-    let length = |v: [i64; 2]| add(add(1, v[0]), v[1]);
-    let [first, second] = pair.manifold.points.map(|point| length(point.arm));
-    let arm = first.max(second);
-    let arms = [arm, add(arm, length(between))];
-    let turning = [0, 1].map(|body: usize| mul(omega[body].saturating_abs(), arms[body], 32));
-    // 16 for the roundings of both.
-    turning.into_iter().chain(v).chain(gain.into_iter().flatten()).fold(16, add)
-}
-
-/// Whether a near pair turns so fast, and nothing presses it together, that another corner may swing in across the gap, of
-/// which rows would not know. Under forces rows have it all the same: what is to come to rest must be theirs.
-fn swings(pair: &Pair, bodies: &Bodies, drive: &Drive, mobilities: &[Mobility], scales: &Scales) -> bool {
-    let rim = |slot: u32| {
-        let omega = bodies.omega.get(slot as usize).to_bits().saturating_abs();
-        mul(omega, mobilities[slot as usize].reach, 32)
-    };
+/// By how much a pair overlaps, Q32 m; negative by the gap, and nothing is as far as one without points.
+fn overlap(pair: &Pair) -> i64 {
     let points = &pair.manifold.points[..pair.manifold.count as usize];
-    points.iter().all(|point| point.separation > scales.touching)
-        && rim(pair.bodies[0]).saturating_add(rim(pair.bodies[1])) > scales.swinging()
-        && pair.bodies.iter().all(|&slot| drive.gain(slot as usize, scales.margins.tick) == [0; 2])
-}
-
-/// Whether a near pair comes together so fast that it strikes.
-fn strikes(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scales, among: bool) -> bool {
-    let [a, b] = pair.bodies.map(|slot| slot as usize);
-    let (va, vb) = (bodies.velocity(a), bodies.velocity(b));
-    let v = [va.x.to_bits().saturating_sub(vb.x.to_bits()), va.y.to_bits().saturating_sub(vb.y.to_bits())];
-    let omega = [a, b].map(|at| bodies.omega.get(at).to_bits());
-    let gain = [a, b].map(|at| drive.gain(at, scales.margins.tick));
-    let between = |c: &[i64]| c[b].saturating_sub(c[a]);
-    let between = [between(bodies.x.bits()), between(bodies.y.bits())];
-    // Without restitution the threshold is the same whatever presses.
-    let slow = pair.restitution == 0 && fastest(pair, between, v, omega, gain) <= scales.threshold(0, 0, among);
-    let strikes = || comes_fast(pair, between, v, omega, gain, scales, among);
-    debug_assert!(!slow || !strikes(), "a bound of the speed is below it");
-    !slow && strikes()
-}
-
-/// The same by the directions and arms of its points.
-fn comes_fast(
-    pair: &Pair,
-    between: [i64; 2],
-    v: [i64; 2],
-    omega: [i64; 2],
-    gain: [[i64; 2]; 2],
-    scales: &Scales,
-    among: bool,
-) -> bool {
-    let n = pair.manifold.normal.map(i64::from);
-    let press = gain.map(|gain| dot(gain, n, 30));
-    let mut closest = i64::MAX;
-    let mut slowest = i64::MAX;
-    for point in &pair.manifold.points[..pair.manifold.count as usize] {
-        let other = [point.arm[0].saturating_sub(between[0]), point.arm[1].saturating_sub(between[1])];
-        let turning = |omega: i64, arm: [i64; 2]| mul(omega, cross(arm, n, 30), 32);
-        let speed = dot(v, n, 30).saturating_add(turning(omega[0], point.arm)).saturating_sub(turning(omega[1], other));
-        closest = closest.min(point.separation);
-        slowest = slowest.min(speed);
-    }
-    let weight = weight(gain[0]).max(weight(gain[1]));
-    let threshold = scales.threshold(pair.restitution, weight, among);
-    // Across a gap forces make it faster; what rests is pressed by them and does not strike.
-    let (gap, pressed) = (closest > scales.touching, press[1].saturating_sub(press[0]).max(0));
-    let fast = slowest.min(0).saturating_neg().saturating_add(if gap { pressed } else { 0 }) > threshold;
-    // What parts needs no row in this tick, which would stop what turns it about, or another corner that swings in.
-    let parts = slowest.saturating_sub(pressed) > scales.parting(pair.restitution, gap, threshold, weight);
-    (fast || parts) && closest > scales.slack.saturating_neg()
+    points.iter().map(|point| point.separation.saturating_neg()).max().unwrap_or(i64::MIN)
 }

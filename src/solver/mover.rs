@@ -206,6 +206,11 @@ impl Movers {
         self.places.get(slot as usize).copied().unwrap_or(0)
     }
 
+    /// The slot of the body at a place other than 0.
+    pub(crate) fn slot(&self, place: u32) -> usize {
+        self.courses[place as usize].slot as usize
+    }
+
     /// Whether rows have changed its velocity.
     pub(crate) fn is_pushed(&self, place: u32) -> bool {
         self.courses[place as usize].pushed

@@ -64,6 +64,14 @@ pub(crate) struct Block {
     pub(crate) heavy: u8,
 }
 
+/// What the rows of a contact read: speeds along the tangent and along the normal at each point, Q48, and how far the points
+/// are from touching, Q26.
+pub(super) struct Look {
+    pub(super) slip: i64,
+    pub(super) speed: [i64; 2],
+    pub(super) separation: [i32; 2],
+}
+
 impl Default for Block {
     fn default() -> Self {
         const NONE: Lane = [0; LANES];
@@ -175,10 +183,34 @@ impl Block {
         }
     }
 
+    /// What the rows of a contact read.
+    #[inline(always)]
+    pub(super) fn look(&self, i: usize, movers: &[Mover]) -> Look {
+        let (a, b) = (&movers[self.bodies[0][i] as usize], &movers[self.bodies[1][i] as usize]);
+        let [nx, ny] = [self.normal[0][i], self.normal[1][i]];
+        let v = [0, 1].map(|axis| lane::round::<28>(sub(a.v[axis], b.v[axis])) as i32);
+        let w = [lane::round::<28>(a.w) as i32, lane::round::<28>(b.w) as i32];
+        let along = add(mul(nx, v[0]), mul(ny, v[1]));
+        let across = sub(mul(nx, v[1]), mul(ny, v[0]));
+        let turning = |row: &Row, [a, b]: [i32; 2]| sub(mul(row.arm[0][i], a), mul(row.arm[1][i], b));
+        Look {
+            slip: add(across, turning(&self.friction, w)),
+            speed: [0, 1].map(|at| add(along, turning(&self.points[at], w))),
+            separation: [0, 1].map(|at| lane::limit(add(self.separation[at][i].into(), self.moved(i, at, a, b)))),
+        }
+    }
+
+    /// What friction holds at most under these loads.
+    #[inline(always)]
+    pub(super) fn hold(&self, i: usize, load: [i32; 2]) -> i64 {
+        let limit = add(mul(self.limit[0][i], load[0]), mul(self.limit[1][i], load[1]));
+        lane::round::<28>(limit).min(IMPULSE_MAX)
+    }
+
     /// Solves one contact, with or without its friction; whether an impulse changed much, and whether a row pushed.
     // Not inlined: in a loop the compiler makes branches of limits and choices that are as good as random.
     #[inline(never)]
-    fn contact<const BIASED: bool, const FRICTION: bool>(
+    pub(super) fn contact<const BIASED: bool, const FRICTION: bool>(
         &mut self,
         i: usize,
         movers: &mut [Mover],
@@ -188,28 +220,14 @@ impl Block {
         if places[0] == places[1] {
             return (false, false);
         }
-        let (a, b) = (&movers[places[0]], &movers[places[1]]);
-        let [nx, ny] = [self.normal[0][i], self.normal[1][i]];
-        let v = [0, 1].map(|axis| lane::round::<28>(sub(a.v[axis], b.v[axis])) as i32);
-        let w = [lane::round::<28>(a.w) as i32, lane::round::<28>(b.w) as i32];
-        let along = add(mul(nx, v[0]), mul(ny, v[1]));
-        let across = sub(mul(nx, v[1]), mul(ny, v[0]));
-        let turning = |row: &Row, [a, b]: [i32; 2]| sub(mul(row.arm[0][i], a), mul(row.arm[1][i], b));
-        let mut speed = [0, 1].map(|at| add(along, turning(&self.points[at], w)));
+        let Look { slip, mut speed, separation } = self.look(i, movers);
         let load = [0, 1].map(|at| self.points[at].impulse[i]);
-
-        let separation = [0, 1].map(|at| {
-            let moved = self.moved(i, at, a, b);
-            lane::limit(add(self.separation[at][i].into(), moved))
-        });
 
         let mut change = [0; 3];
         if FRICTION {
-            let limit = add(mul(self.limit[0][i], load[0]), mul(self.limit[1][i], load[1]));
-            let limit = lane::round::<28>(limit).min(IMPULSE_MAX);
+            let limit = self.hold(i, load);
             let before = i64::from(self.friction.impulse[i]);
-            let slip = lane::round::<28>(add(across, turning(&self.friction, w)));
-            let impulse = lane::clamp(sub(before, slip), sub(0, limit), limit);
+            let impulse = lane::clamp(sub(before, lane::round::<28>(slip)), sub(0, limit), limit);
             self.friction.impulse[i] = impulse as i32;
             change[0] = sub(impulse, before) as i32;
             for (speed, couple) in speed.iter_mut().zip(&self.couple) {
@@ -263,7 +281,7 @@ impl Block {
 
     /// Changes of the impulses of friction and of both points, to the bodies.
     #[inline(always)]
-    fn give(&self, i: usize, movers: &mut [Mover], change: [i32; 3]) {
+    pub(super) fn give(&self, i: usize, movers: &mut [Mover], change: [i32; 3]) {
         let [slide, first, second] = change;
         let (f, [p, q]) = (&self.friction, &self.points);
         // Rounded once to what rows read: a change that no row could see waits for the next tick's warm start. Products of

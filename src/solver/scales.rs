@@ -33,6 +33,9 @@ const FIRM: i64 = 1 << 17;
 /// apart: 1 m/s, 48 fraction bits. For a box at rest on the ground that is 0.016 m/s. What is stiffer must be heavy: with
 /// 2 m/s, 100 kg on 1 kg never come to rest, and on three boxes of 1 kg they walk.
 const HEAVY: i64 = 1 << 48;
+/// The load from which on a contact makes its island hard, as [`HEAVY`]: 3/4 m/s, half of it once it is. A stack of 24 boxes
+/// has it at its foot, the pyramid of 40 rows does not; one of 20 would take five times as long.
+const HARD: i64 = 3 << 46;
 /// The speed with which overlaps are pushed apart at most: 1 m/s, 20 fraction bits.
 const PUSH: i64 = 1 << 20;
 /// The distance at which contacts are looked for: 2 cm, 32 fraction bits.
@@ -59,6 +62,9 @@ pub(crate) struct Scales {
     /// 1/h and bias/h in 1/s, 14 fraction bits.
     pub(crate) close_rate: i32,
     pub(crate) push_rate: i32,
+    /// With which part of itself in a second an overlap of rigid rows opens, Q14: an eighth in a tick. With a fifth in a
+    /// substep a tower that becomes rigid would kick itself over, for to right a tilt at once takes more than its load.
+    pub(crate) rigid_rate: i32,
     /// The bias of overlaps at most, Q20.
     pub(crate) push: i64,
     pub(crate) soft: [i32; 2],
@@ -69,6 +75,8 @@ pub(crate) struct Scales {
     pub(crate) tick_turn: i64,
     /// What of an overlap is no more than bodies at rest have, Q32 m.
     pub(crate) slack: i64,
+    /// The overlap from which on an island is hard, Q32 m: sweeps would let what is pushed apart fly.
+    pub(crate) deep: i64,
     /// How near is touching, Q32 m.
     pub(crate) touching: i64,
     /// The change of speed with which a body comes [`Scales::astray`] within a tick, Q48 m/s over 2^k.
@@ -91,12 +99,14 @@ impl Scales {
             coarse: div(1 << 30, rate.into()) as i32,
             close_rate: (rate << 14) as i32,
             push_rate,
+            rigid_rate: i32::try_from(tick_rate).unwrap_or(i32::MAX >> 12) << 12,
             push: -PUSH,
             soft: [SOFT.mass, SOFT.impulse],
             firm,
             margins: Margins { base: MARGIN << shift, tick: div(1 << 63, tick_rate.into()) as i64 },
             tick_turn: div(TURN_PER_RADIAN_Q64, i128::from(tick_rate).saturating_mul(2)) as i64,
             slack: SLACK << shift,
+            deep: (SLACK << shift).saturating_mul(10),
             touching: i64::from(SLOP) << shift.saturating_add(6),
             aside: (MARGIN / 2).saturating_mul(tick_rate.into()) << 16,
         }
@@ -105,6 +115,12 @@ impl Scales {
     /// Whether a contact with these impulses (Q48) of its points is heavy: it bears dozens of times its bodies' weight.
     pub(crate) fn is_heavy(normal: [i64; 2]) -> bool {
         normal[0].saturating_add(normal[1]) >= HEAVY
+    }
+
+    /// Whether a contact with these impulses (Q48) of its points makes its island hard: soft rows would yield by a millimetre.
+    /// `was`: whether its island was; half of it is enough then, or islands would go to and fro.
+    pub(crate) fn is_hard(normal: [i64; 2], was: bool) -> bool {
+        normal[0].saturating_add(normal[1]) >= if was { HARD >> 1 } else { HARD }
     }
 
     /// When the n-th substep begins and ends, from 1 on; Q32 of the tick.
