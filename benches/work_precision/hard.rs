@@ -1,0 +1,187 @@
+//! The hard cases: what became of each.
+
+use crate::clock::time;
+use crate::scenes::hard::{Case, Should, all};
+use crate::scenes::{G, Kind, ONE};
+use crate::stage::{Setting, Stage, State};
+use crate::yardstick::worst_overlap;
+use std::fmt::Write;
+
+/// What became of a case. Lengths in metres, speeds in m/s.
+pub struct Outcome {
+    pub name: &'static str,
+    pub what: &'static str,
+    pub survived: bool,
+    /// Whether it should stand: else ways have no meaning.
+    pub stands: bool,
+    /// The greatest way sideways, and down, of a body from where it began.
+    pub drift: f64,
+    pub sag: f64,
+    pub overlap: f64,
+    /// The fastest body at the end, turning counted as m/s at half a metre.
+    pub speed: f64,
+    /// The greatest way of a body in the second half.
+    pub creep: f64,
+    /// The greatest rise of KE + PE above its least so far, as the height to which it would lift everything on earth; `None`
+    /// where something is driven.
+    pub gain: Option<f64>,
+    /// Whether the same scene elsewhere gave the same bits; `None` if that was not looked at.
+    pub same: Option<bool>,
+    /// What the world's status names.
+    pub status: String,
+    /// Microseconds a tick.
+    pub tick: f64,
+}
+
+/// KE + PE since the start, in J.
+struct Energy {
+    masses: Vec<f64>,
+    gravity: [f64; 2],
+    start: Vec<State>,
+}
+
+impl Energy {
+    fn new(stage: &Stage, case: &Case) -> Energy {
+        let places = 0..stage.ids.len();
+        let gravity = case.scene.gravity.map(|g| g as f64 / ONE as f64);
+        let masses = places.clone().map(|at| stage.mass(at)).collect();
+        Energy { masses, gravity, start: places.map(|at| stage.state(at)).collect() }
+    }
+
+    fn of(&self, stage: &Stage) -> f64 {
+        let fallen = |at: usize| {
+            let ([x, y], [x0, y0], [gx, gy]) = (stage.state(at).at, self.start[at].at, self.gravity);
+            -self.masses[at] * (gx * (x - x0) + gy * (y - y0))
+        };
+        let potential: f64 = (0..self.masses.len()).filter(|&at| self.masses[at] > 0.0).map(fallen).sum();
+        stage.kinetic() + potential
+    }
+
+    /// The weight of all on earth, in N.
+    fn weight(&self) -> f64 {
+        self.masses.iter().sum::<f64>() * G as f64 / ONE as f64
+    }
+}
+
+/// Whether two worlds are alike but for where their origin is.
+fn alike(a: &Stage, b: &Stage, moved: i64) -> bool {
+    let by = moved << 32;
+    a.ids.iter().zip(&b.ids).all(|(&a_id, &b_id)| {
+        let (p, q) = (a.world.body(a_id).expect("kept"), b.world.body(b_id).expect("kept"));
+        p.position().x.to_bits() + by == q.position().x.to_bits()
+            && p.position().y == q.position().y
+            && p.angle() == q.angle()
+            && p.velocity() == q.velocity()
+            && p.angular_velocity() == q.angular_velocity()
+    })
+}
+
+/// Whether the same scene gives the same bits, looked at in every tick.
+fn same_elsewhere(case: &Case) -> Option<bool> {
+    let mut here = Stage::new(&case.scene, Setting::default());
+    let moved = |&by: &i64| (by, Stage::new(&case.scene.clone().moved(by * ONE), Setting::default()));
+    let mut there: Vec<(i64, Stage)> = case.moved.iter().map(moved).collect();
+    for _ in 0..case.ticks {
+        here.run(1);
+        for (by, stage) in &mut there {
+            stage.run(1);
+            if !alike(&here, stage, *by) {
+                return Some(false);
+            }
+        }
+    }
+    (!there.is_empty()).then_some(true)
+}
+
+fn survived(case: &Case, start: &[State], stage: &Stage, dynamic: &[usize], gain: f64) -> bool {
+    let metre = |micro: i64| micro as f64 / ONE as f64;
+    dynamic.iter().all(|&at| {
+        let (from, to) = (start[at], stage.state(at));
+        match case.should {
+            Should::Stand(within) => (to.at[0] - from.at[0]).hypot(to.at[1] - from.at[1]) < metre(within),
+            Should::StayIn(low, high) => (0..2).all(|i| metre(low[i]) <= to.at[i] && to.at[i] <= metre(high[i])),
+            Should::Topple => to.angle - from.angle < -1.0,
+            Should::NotGain => gain < 1e-3,
+        }
+    })
+}
+
+fn run(case: &Case) -> Outcome {
+    let mut stage = Stage::new(&case.scene, Setting::default());
+    let energy = Energy::new(&stage, case);
+    let dynamic: Vec<usize> = (0..stage.ids.len()).filter(|&at| energy.masses[at] > 0.0).collect();
+    let driven = case.scene.things.iter().any(|thing| thing.kind == Kind::Kinematic);
+    let (mut least, mut gain, mut spent, mut half) = (energy.of(&stage), 0.0f64, 0.0, Vec::new());
+    // Energy is looked at in every tick of short runs.
+    let stride = case.ticks.div_ceil(4000);
+    for k in 0..case.ticks / stride {
+        if k == case.ticks / stride / 2 {
+            half = dynamic.iter().map(|&at| stage.state(at)).collect();
+        }
+        spent += time(|| stage.run(stride));
+        let now = energy.of(&stage);
+        gain = gain.max(now - least);
+        least = least.min(now);
+    }
+    let moved = |axis: usize, sign: f64| move |(a, b): (&State, State)| sign * (b.at[axis] - a.at[axis]);
+    let ways = |axis, sign| dynamic.iter().map(|&at| (&energy.start[at], stage.state(at))).map(moved(axis, sign));
+    let speed = |&at: &usize| {
+        let State { velocity: [x, y], spin, .. } = stage.state(at);
+        x.hypot(y).max(spin.abs() / 2.0)
+    };
+    let gain = gain / energy.weight();
+    let crept = |(&at, from): (&usize, &State)| {
+        let to = stage.state(at).at;
+        (to[0] - from.at[0]).hypot(to[1] - from.at[1])
+    };
+    let entries: Vec<String> = stage.world.status().entries().iter().map(|e| e.bound.to_string()).collect();
+    Outcome {
+        name: case.name,
+        what: case.what,
+        survived: survived(case, &energy.start, &stage, &dynamic, gain),
+        stands: matches!(case.should, Should::Stand(_)),
+        drift: ways(0, 1.0).map(f64::abs).fold(0.0, f64::max),
+        sag: ways(1, -1.0).fold(0.0, f64::max),
+        overlap: worst_overlap(&stage),
+        speed: dynamic.iter().map(speed).fold(0.0, f64::max),
+        creep: dynamic.iter().zip(&half).map(crept).fold(0.0, f64::max),
+        gain: (!driven).then_some(gain),
+        same: same_elsewhere(case),
+        status: entries.join(", "),
+        tick: spent * 1e-3 / (case.ticks / stride * stride) as f64,
+    }
+}
+
+/// Runs all of them.
+pub fn measure() -> Vec<Outcome> {
+    let report = |case: &Case| {
+        let outcome = run(case);
+        eprintln!(
+            "{}: {} ({:.0} µs a tick)",
+            case.name,
+            if outcome.survived { "survived" } else { "FAILED" },
+            outcome.tick
+        );
+        outcome
+    };
+    all().iter().map(report).collect()
+}
+
+/// As a table of comma-separated values.
+pub fn csv(outcomes: &[Outcome]) -> String {
+    let mut text = String::from(
+        "case,what,survived,drift_m,sag_m,creep_in_2nd_half_m,overlap_m,end_speed_m_per_s,energy_gain_m_of_height,same_bits_elsewhere,status,us_per_tick\n",
+    );
+    for o in outcomes {
+        let [drift, sag, creep] =
+            [o.drift, o.sag, o.creep].map(|v| if o.stands { format!("{v:.3e}") } else { String::new() });
+        let same = o.same.map_or(String::new(), |same| same.to_string());
+        let gain = o.gain.map_or(String::new(), |gain| format!("{gain:.3e}"));
+        let _ = writeln!(
+            text,
+            "{},\"{}\",{},{drift},{sag},{creep},{:.3e},{:.3e},{gain},{same},\"{}\",{:.2}",
+            o.name, o.what, o.survived, o.overlap, o.speed, o.status, o.tick
+        );
+    }
+    text
+}
