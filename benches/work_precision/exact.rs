@@ -2,7 +2,7 @@
 
 use crate::reference;
 use crate::scenes::{MILLI, ONE, Scene, exact};
-use crate::stage::{Setting, Stage};
+use crate::stage::{Setting, Stage, Trial};
 use std::f64::consts::{FRAC_PI_4, SQRT_2};
 
 /// A case.
@@ -16,7 +16,7 @@ pub struct Case {
     pub scene: fn() -> Scene,
     pub seconds: f64,
     /// Runs it for so many ticks and says how far off it was.
-    pub judge: fn(Stage, u64) -> f64,
+    pub judge: fn(&mut dyn Trial, u64) -> f64,
 }
 
 impl Case {
@@ -26,7 +26,7 @@ impl Case {
 
     /// How far off it ends with this setting.
     pub fn measure(&self, setting: Setting) -> f64 {
-        (self.judge)(Stage::new(&(self.scene)(), setting), self.ticks(setting))
+        (self.judge)(&mut Stage::new(&(self.scene)(), setting), self.ticks(setting))
     }
 }
 
@@ -67,56 +67,56 @@ fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// The time that so many ticks take, in seconds.
-fn seconds(stage: &Stage, ticks: u64) -> f64 {
-    ticks as f64 / f64::from(stage.setting.rate)
+fn seconds(stage: &dyn Trial, ticks: u64) -> f64 {
+    ticks as f64 / stage.rate()
 }
 
-fn throw(mut stage: Stage, ticks: u64) -> f64 {
+fn throw(stage: &mut dyn Trial, ticks: u64) -> f64 {
     stage.run(ticks);
-    let t = seconds(&stage, ticks);
+    let t = seconds(stage, ticks);
     apart(stage.state(0).at, [10.0 * t, 10.0 * t - 0.5 * G * t * t])
 }
 
 /// v' = g − c·v.
-fn damped_throw(mut stage: Stage, ticks: u64) -> f64 {
+fn damped_throw(stage: &mut dyn Trial, ticks: u64) -> f64 {
     stage.run(ticks);
-    let (t, c) = (seconds(&stage, ticks), 0.5f64);
+    let (t, c) = (seconds(stage, ticks), 0.5f64);
     let part = -(-c * t).exp_m1() / c;
     apart(stage.state(0).at, [20.0 * part, (10.0 + G / c) * part - G / c * t])
 }
 
-fn orbit(mut stage: Stage, ticks: u64) -> f64 {
+fn orbit(stage: &mut dyn Trial, ticks: u64) -> f64 {
     stage.run(ticks);
-    apart(stage.state(0).at, reference::kepler(10.0, 0.6, 1000.0, seconds(&stage, ticks)))
+    apart(stage.state(0).at, reference::kepler(10.0, 0.6, 1000.0, seconds(stage, ticks)))
 }
 
-fn spin(mut stage: Stage, ticks: u64) -> f64 {
+fn spin(stage: &mut dyn Trial, ticks: u64) -> f64 {
     stage.run(ticks);
-    (stage.state(0).angle - 10.0 * seconds(&stage, ticks)).abs()
+    (stage.state(0).angle - 10.0 * seconds(stage, ticks)).abs()
 }
 
 /// How far the last body went to the right.
-fn way(stage: &mut Stage, ticks: u64) -> f64 {
-    let last = stage.ids.len() - 1;
+fn way(stage: &mut dyn Trial, ticks: u64) -> f64 {
+    let last = stage.count() - 1;
     let from = stage.state(last).at[0];
     stage.run(ticks);
     stage.state(last).at[0] - from
 }
 
-fn drift_far(mut stage: Stage, ticks: u64) -> f64 {
-    (way(&mut stage, ticks) - 10.0).abs()
+fn drift_far(stage: &mut dyn Trial, ticks: u64) -> f64 {
+    (way(stage, ticks) - 10.0).abs()
 }
 
-fn slide(mut stage: Stage, ticks: u64) -> f64 {
-    (way(&mut stage, ticks) - 9.0 / (2.0 * 0.6 * G)).abs()
+fn slide(stage: &mut dyn Trial, ticks: u64) -> f64 {
+    (way(stage, ticks) - 9.0 / (2.0 * 0.6 * G)).abs()
 }
 
-fn slide_far(stage: Stage, ticks: u64) -> f64 {
+fn slide_far(stage: &mut dyn Trial, ticks: u64) -> f64 {
     slide(stage, ticks)
 }
 
 /// How far the last body went down a slope of 3 in 4.
-fn down(stage: &mut Stage, ticks: u64) -> f64 {
+fn down(stage: &mut dyn Trial, ticks: u64) -> f64 {
     let from = stage.state(1).at;
     stage.run(ticks);
     let to = stage.state(1).at;
@@ -124,37 +124,37 @@ fn down(stage: &mut Stage, ticks: u64) -> f64 {
 }
 
 /// a = g·(sin − μ·cos).
-fn incline(mut stage: Stage, ticks: u64) -> f64 {
-    let t = seconds(&stage, ticks);
-    (down(&mut stage, ticks) - 0.5 * G * (0.6 - 0.3 * 0.8) * t * t).abs()
+fn incline(stage: &mut dyn Trial, ticks: u64) -> f64 {
+    let t = seconds(stage, ticks);
+    (down(stage, ticks) - 0.5 * G * (0.6 - 0.3 * 0.8) * t * t).abs()
 }
 
 /// a = g·sin / (1 + ½).
-fn incline_roll(mut stage: Stage, ticks: u64) -> f64 {
-    let t = seconds(&stage, ticks);
-    (down(&mut stage, ticks) - 0.5 * G * 0.6 / 1.5 * t * t).abs()
+fn incline_roll(stage: &mut dyn Trial, ticks: u64) -> f64 {
+    let t = seconds(stage, ticks);
+    (down(stage, ticks) - 0.5 * G * 0.6 / 1.5 * t * t).abs()
 }
 
-fn incline_rest(mut stage: Stage, ticks: u64) -> f64 {
-    down(&mut stage, ticks).abs()
+fn incline_rest(stage: &mut dyn Trial, ticks: u64) -> f64 {
+    down(stage, ticks).abs()
 }
 
 /// It slides until v = 2/3 v₀ and rolls from then on.
-fn slide_to_roll(mut stage: Stage, ticks: u64) -> f64 {
-    let (t, a) = (seconds(&stage, ticks), 0.6 * G);
+fn slide_to_roll(stage: &mut dyn Trial, ticks: u64) -> f64 {
+    let (t, a) = (seconds(stage, ticks), 0.6 * G);
     let slid = 3.0 / (3.0 * a);
     let want = 3.0 * slid - 0.5 * a * slid * slid + 2.0 * (t - slid);
-    (way(&mut stage, ticks) - want).abs()
+    (way(stage, ticks) - want).abs()
 }
 
 /// The worst of some peaks above the floor, against e²ⁿ m. Each is the top of the parabola through three ticks.
-fn bounce(mut stage: Stage, ticks: u64, e: f64, count: usize) -> f64 {
-    let height = |stage: &Stage| stage.state(1).at[1] - 0.25;
-    let mut last = [height(&stage); 3];
+fn bounce(stage: &mut dyn Trial, ticks: u64, e: f64, count: usize) -> f64 {
+    let height = |stage: &dyn Trial| stage.state(1).at[1] - 0.25;
+    let mut last = [height(stage); 3];
     let (mut peaks, mut rising) = (Vec::new(), false);
     for _ in 0..ticks {
         stage.run(1);
-        last = [last[1], last[2], height(&stage)];
+        last = [last[1], last[2], height(stage)];
         let [a, b, c] = last;
         if rising && c <= b {
             let (slope, bend) = ((c - a) / 2.0, a - 2.0 * b + c);
@@ -168,16 +168,16 @@ fn bounce(mut stage: Stage, ticks: u64, e: f64, count: usize) -> f64 {
     (0..count).map(off).fold(0.0, f64::max)
 }
 
-fn bounce_disc(stage: Stage, ticks: u64) -> f64 {
+fn bounce_disc(stage: &mut dyn Trial, ticks: u64) -> f64 {
     bounce(stage, ticks, 0.8, 5)
 }
 
-fn bounce_box(stage: Stage, ticks: u64) -> f64 {
+fn bounce_box(stage: &mut dyn Trial, ticks: u64) -> f64 {
     bounce(stage, ticks, 0.5, 3)
 }
 
 /// The worst of speeds to the right, or spins.
-fn speeds(mut stage: Stage, ticks: u64, want: &[f64]) -> f64 {
+fn speeds(stage: &mut dyn Trial, ticks: u64, want: &[f64]) -> f64 {
     stage.run(ticks);
     let off = |(at, want): (usize, &f64)| {
         let state = stage.state(at);
@@ -186,20 +186,20 @@ fn speeds(mut stage: Stage, ticks: u64, want: &[f64]) -> f64 {
     want.iter().enumerate().map(off).fold(0.0, f64::max)
 }
 
-fn head_on(stage: Stage, ticks: u64) -> f64 {
+fn head_on(stage: &mut dyn Trial, ticks: u64) -> f64 {
     speeds(stage, ticks, &[-2.0, 0.0])
 }
 
-fn typical(stage: Stage, ticks: u64) -> f64 {
+fn typical(stage: &mut dyn Trial, ticks: u64) -> f64 {
     speeds(stage, ticks, &[0.251, 2.259])
 }
 
-fn one_hits_two(stage: Stage, ticks: u64) -> f64 {
+fn one_hits_two(stage: &mut dyn Trial, ticks: u64) -> f64 {
     speeds(stage, ticks, &[0.0, 0.0, 3.0])
 }
 
 /// IM:col2D with the corner straight below the middle: j acts on the bar 1 m from its middle, and does not turn the square.
-fn corner_on_bar(mut stage: Stage, ticks: u64) -> f64 {
+fn corner_on_bar(stage: &mut dyn Trial, ticks: u64) -> f64 {
     stage.run(ticks);
     let (square, bar) = (1.4 * 1.4, 4.0);
     let inertia = bar * (16.0 + 1.0) / 12.0;
@@ -221,12 +221,12 @@ fn first_corner() -> (f64, [f64; 2]) {
 }
 
 /// IM:col2D at the corner that meets the floor first.
-fn turning_corner(mut stage: Stage, _: u64) -> f64 {
+fn turning_corner(stage: &mut dyn Trial, _: u64) -> f64 {
     let (_, [x, _]) = first_corner();
-    let before = |stage: &Stage| stage.state(1).velocity[1] < -1.999_999 && stage.state(1).spin > 3.999_999;
-    let most = seconds(&stage, 1).recip() as u64;
+    let before = |stage: &dyn Trial| stage.state(1).velocity[1] < -1.999_999 && stage.state(1).spin > 3.999_999;
+    let most = seconds(stage, 1).recip() as u64;
     let mut ticks = 0;
-    while before(&stage) && ticks < most {
+    while before(stage) && ticks < most {
         stage.run(1);
         ticks += 1;
     }
@@ -237,51 +237,51 @@ fn turning_corner(mut stage: Stage, _: u64) -> f64 {
 }
 
 /// By what the world says of its first collision.
-fn turning_time(mut stage: Stage, ticks: u64) -> f64 {
+fn turning_time(stage: &mut dyn Trial, ticks: u64) -> f64 {
     let (t, _) = first_corner();
     for tick in 0..ticks {
         stage.run(1);
-        if let Some(first) = stage.world.collisions().first() {
-            return (seconds(&stage, tick) + first.time.to_f64() - t).abs();
+        if let Some(meeting) = stage.meeting() {
+            return (seconds(stage, tick) + meeting - t).abs();
         }
     }
     f64::NAN
 }
 
 /// Of kinetic energy, which the gas keeps.
-fn gas(mut stage: Stage, ticks: u64) -> f64 {
+fn gas(stage: &mut dyn Trial, ticks: u64) -> f64 {
     let before = stage.kinetic();
     stage.run(ticks);
     (stage.kinetic() / before - 1.0).abs()
 }
 
 /// How far the top one sank.
-fn sag(mut stage: Stage, ticks: u64) -> f64 {
-    let top = stage.ids.len() - 1;
+fn sag(stage: &mut dyn Trial, ticks: u64) -> f64 {
+    let top = stage.count() - 1;
     let from = stage.state(top).at[1];
     stage.run(ticks);
     (from - stage.state(top).at[1]).abs()
 }
 
 /// The box turns about a corner that does not slip, at the distance r from its middle: r²·(1 + 1/3)·φ'' = −g·x.
-fn topple(mut stage: Stage, ticks: u64) -> f64 {
+fn topple(stage: &mut dyn Trial, ticks: u64) -> f64 {
     stage.run(ticks);
     let r2 = 1.25f64;
     let start = [1.0f64.atan2(-0.5), -1.5];
     let bend = |phi: f64| -G * r2.sqrt() * phi.cos() / (r2 * 4.0 / 3.0);
-    let turned = reference::integrate(start, bend, seconds(&stage, ticks))[0] - start[0];
+    let turned = reference::integrate(start, bend, seconds(stage, ticks))[0] - start[0];
     (stage.state(1).angle - turned).abs()
 }
 
 /// Against the engine itself, as fine as it goes: there is no closed form.
-fn seesaw(mut stage: Stage, ticks: u64) -> f64 {
+fn seesaw(stage: &mut dyn Trial, ticks: u64) -> f64 {
     static FINE: std::sync::OnceLock<[[f64; 2]; 3]> = std::sync::OnceLock::new();
-    let places = |stage: &Stage| [1, 2, 3].map(|at| stage.state(at).at);
+    let places = |stage: &dyn Trial| [1, 2, 3].map(|at| stage.state(at).at);
     let fine = FINE.get_or_init(|| {
         let mut fine = Stage::new(&exact::seesaw(), Setting { rate: 960, substeps: 64 });
         fine.run(576);
         places(&fine)
     });
     stage.run(ticks);
-    places(&stage).iter().zip(fine).map(|(a, b)| apart(*a, *b)).fold(0.0, f64::max)
+    places(stage).iter().zip(fine).map(|(a, b)| apart(*a, *b)).fold(0.0, f64::max)
 }

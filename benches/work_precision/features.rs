@@ -2,7 +2,7 @@
 
 use crate::clock::{Cost, time};
 use crate::scenes::{MILLI, Micro, ONE, Pair, Scene, features};
-use crate::stage::{Setting, Stage};
+use crate::stage::{Setting, Stage, Trial};
 use std::fmt::Write;
 use std::hint::black_box;
 use tamias2d::replay::Recorder;

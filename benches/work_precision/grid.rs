@@ -2,7 +2,7 @@
 
 use crate::clock::{Cost, time};
 use crate::exact::{CASES, Case};
-use crate::stage::{Setting, Stage};
+use crate::stage::{Setting, Stage, Trial};
 use crate::table::Table;
 use std::fmt::Write;
 

@@ -3,7 +3,7 @@
 use crate::clock::time;
 use crate::scenes::hard::{Case, Should, all};
 use crate::scenes::{G, Kind, ONE};
-use crate::stage::{Setting, Stage, State};
+use crate::stage::{Setting, Stage, State, Trial};
 use crate::yardstick::worst_overlap;
 use std::fmt::Write;
 
@@ -14,14 +14,7 @@ pub struct Outcome {
     pub survived: bool,
     /// Whether it should stand: else ways have no meaning.
     pub stands: bool,
-    /// The greatest way sideways, and down, of a body from where it began.
-    pub drift: f64,
-    pub sag: f64,
-    pub overlap: f64,
-    /// The fastest body at the end, turning counted as m/s at half a metre.
-    pub speed: f64,
-    /// The greatest way of a body in the second half.
-    pub creep: f64,
+    pub ways: Ways,
     /// The greatest rise of KE + PE above its least so far, as the height to which it would lift everything on earth; `None`
     /// where something is driven.
     pub gain: Option<f64>,
@@ -93,58 +86,78 @@ fn same_elsewhere(case: &Case) -> Option<bool> {
     (!there.is_empty()).then_some(true)
 }
 
-fn survived(case: &Case, start: &[State], stage: &Stage, dynamic: &[usize], gain: f64) -> bool {
-    let metre = |micro: i64| micro as f64 / ONE as f64;
-    dynamic.iter().all(|&at| {
-        let (from, to) = (start[at], stage.state(at));
-        match case.should {
-            Should::Stand(within) => (to.at[0] - from.at[0]).hypot(to.at[1] - from.at[1]) < metre(within),
-            Should::StayIn(low, high) => (0..2).all(|i| metre(low[i]) <= to.at[i] && to.at[i] <= metre(high[i])),
-            Should::Topple => to.angle - from.angle < -1.0,
-            Should::NotGain => gain < 1e-3,
+/// What of an outcome follows from where bodies were at the start, in the middle and at the end.
+pub struct Ways {
+    /// The greatest way sideways of a body from where it began, and down.
+    pub drift: f64,
+    pub sag: f64,
+    /// The greatest way of a body in the second half.
+    pub creep: f64,
+    pub overlap: f64,
+    /// The fastest body at the end, turning counted as m/s at half a metre.
+    pub speed: f64,
+    /// Whether all are where they should be.
+    pub right: bool,
+}
+
+impl Ways {
+    pub fn new(case: &Case, start: &[State], half: &[State], end: &[State]) -> Ways {
+        let metre = |micro: i64| micro as f64 / ONE as f64;
+        let far = |a: &State, b: &State| (a.at[0] - b.at[0]).hypot(a.at[1] - b.at[1]);
+        let right = |at: usize| {
+            let (from, to) = (&start[at], &end[at]);
+            match case.should {
+                Should::Stand(within) => far(from, to) < metre(within),
+                Should::StayIn(low, high) => (0..2).all(|i| metre(low[i]) <= to.at[i] && to.at[i] <= metre(high[i])),
+                Should::Topple => to.angle - from.angle < -1.0,
+                Should::NotGain => true,
+            }
+        };
+        let places = || case.scene.things.iter().enumerate().filter(|(_, t)| t.kind == Kind::Dynamic).map(|(at, _)| at);
+        let most = |of: &dyn Fn(usize) -> f64| places().map(of).fold(0.0, f64::max);
+        Ways {
+            drift: most(&|at| (end[at].at[0] - start[at].at[0]).abs()),
+            sag: most(&|at| start[at].at[1] - end[at].at[1]),
+            creep: most(&|at| far(&half[at], &end[at])),
+            overlap: worst_overlap(&case.scene, end),
+            speed: most(&|at| {
+                let State { velocity: [x, y], spin, .. } = end[at];
+                x.hypot(y).max(spin.abs() / 2.0)
+            }),
+            right: places().all(right),
         }
-    })
+    }
+}
+
+fn states(stage: &Stage) -> Vec<State> {
+    (0..stage.count()).map(|at| stage.state(at)).collect()
 }
 
 fn run(case: &Case) -> Outcome {
     let mut stage = Stage::new(&case.scene, Setting::default());
     let energy = Energy::new(&stage, case);
-    let dynamic: Vec<usize> = (0..stage.ids.len()).filter(|&at| energy.masses[at] > 0.0).collect();
     let driven = case.scene.things.iter().any(|thing| thing.kind == Kind::Kinematic);
     let (mut least, mut gain, mut spent, mut half) = (energy.of(&stage), 0.0f64, 0.0, Vec::new());
     // Energy is looked at in every tick of short runs.
     let stride = case.ticks.div_ceil(4000);
     for k in 0..case.ticks / stride {
         if k == case.ticks / stride / 2 {
-            half = dynamic.iter().map(|&at| stage.state(at)).collect();
+            half = states(&stage);
         }
         spent += time(|| stage.run(stride));
         let now = energy.of(&stage);
         gain = gain.max(now - least);
         least = least.min(now);
     }
-    let moved = |axis: usize, sign: f64| move |(a, b): (&State, State)| sign * (b.at[axis] - a.at[axis]);
-    let ways = |axis, sign| dynamic.iter().map(|&at| (&energy.start[at], stage.state(at))).map(moved(axis, sign));
-    let speed = |&at: &usize| {
-        let State { velocity: [x, y], spin, .. } = stage.state(at);
-        x.hypot(y).max(spin.abs() / 2.0)
-    };
+    let ways = Ways::new(case, &energy.start, &half, &states(&stage));
     let gain = gain / energy.weight();
-    let crept = |(&at, from): (&usize, &State)| {
-        let to = stage.state(at).at;
-        (to[0] - from.at[0]).hypot(to[1] - from.at[1])
-    };
     let entries: Vec<String> = stage.world.status().entries().iter().map(|e| e.bound.to_string()).collect();
     Outcome {
         name: case.name,
         what: case.what,
-        survived: survived(case, &energy.start, &stage, &dynamic, gain),
+        survived: ways.right && (!matches!(case.should, Should::NotGain) || gain < 1e-3),
         stands: matches!(case.should, Should::Stand(_)),
-        drift: ways(0, 1.0).map(f64::abs).fold(0.0, f64::max),
-        sag: ways(1, -1.0).fold(0.0, f64::max),
-        overlap: worst_overlap(&stage),
-        speed: dynamic.iter().map(speed).fold(0.0, f64::max),
-        creep: dynamic.iter().zip(&half).map(crept).fold(0.0, f64::max),
+        ways,
         gain: (!driven).then_some(gain),
         same: same_elsewhere(case),
         status: entries.join(", "),
@@ -174,13 +187,13 @@ pub fn csv(outcomes: &[Outcome]) -> String {
     );
     for o in outcomes {
         let [drift, sag, creep] =
-            [o.drift, o.sag, o.creep].map(|v| if o.stands { format!("{v:.3e}") } else { String::new() });
+            [o.ways.drift, o.ways.sag, o.ways.creep].map(|v| if o.stands { format!("{v:.3e}") } else { String::new() });
         let same = o.same.map_or(String::new(), |same| same.to_string());
         let gain = o.gain.map_or(String::new(), |gain| format!("{gain:.3e}"));
         let _ = writeln!(
             text,
             "{},\"{}\",{},{drift},{sag},{creep},{:.3e},{:.3e},{gain},{same},\"{}\",{:.2}",
-            o.name, o.what, o.survived, o.overlap, o.speed, o.status, o.tick
+            o.name, o.what, o.survived, o.ways.overlap, o.ways.speed, o.status, o.tick
         );
     }
     text

@@ -98,6 +98,21 @@ pub struct State {
     pub spin: f64,
 }
 
+/// A scene that goes on: a world, or what was written down of one in another engine.
+pub trait Trial {
+    fn run(&mut self, ticks: u64);
+    /// The body that the scene has in this place.
+    fn state(&self, at: usize) -> State;
+    /// How many bodies the scene has.
+    fn count(&self) -> usize;
+    /// Ticks per second.
+    fn rate(&self) -> f64;
+    /// KE in J.
+    fn kinetic(&self) -> f64;
+    /// When in the last tick something met first, in seconds, where that is known.
+    fn meeting(&self) -> Option<f64>;
+}
+
 impl Stage {
     pub fn new(scene: &Scene, setting: Setting) -> Stage {
         let Setting { rate, substeps } = setting;
@@ -112,14 +127,21 @@ impl Stage {
         Stage { world, ids, setting }
     }
 
-    pub fn run(&mut self, ticks: u64) {
+    /// Mass of the body in this place, in kg; 0 unless it is dynamic.
+    pub fn mass(&self, at: usize) -> f64 {
+        let body = self.world.body(self.ids[at]).expect("scenes keep their bodies");
+        if body.kind() == BodyKind::Dynamic { body.mass().to_f64() } else { 0.0 }
+    }
+}
+
+impl Trial for Stage {
+    fn run(&mut self, ticks: u64) {
         for _ in 0..ticks {
             self.world.step();
         }
     }
 
-    /// The body that the scene has in this place.
-    pub fn state(&self, at: usize) -> State {
+    fn state(&self, at: usize) -> State {
         let body = self.world.body(self.ids[at]).expect("scenes keep their bodies");
         let (p, v) = (body.position().to_f64(), body.velocity().to_f64());
         State {
@@ -130,14 +152,19 @@ impl Stage {
         }
     }
 
-    /// KE in J.
-    pub fn kinetic(&self) -> f64 {
+    fn count(&self) -> usize {
+        self.ids.len()
+    }
+
+    fn rate(&self) -> f64 {
+        f64::from(self.setting.rate)
+    }
+
+    fn kinetic(&self) -> f64 {
         self.world.bodies().map(|body| body.kinetic_energy().to_f64()).sum()
     }
 
-    /// Mass of the body in this place, in kg; 0 unless it is dynamic.
-    pub fn mass(&self, at: usize) -> f64 {
-        let body = self.world.body(self.ids[at]).expect("scenes keep their bodies");
-        if body.kind() == BodyKind::Dynamic { body.mass().to_f64() } else { 0.0 }
+    fn meeting(&self) -> Option<f64> {
+        self.world.collisions().first().map(|first| first.time.to_f64())
     }
 }

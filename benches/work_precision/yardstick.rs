@@ -1,9 +1,9 @@
 //! How deep bodies overlap, by separating axes in `f64`.
 
-use crate::stage::Stage;
-use tamias2d::{BodyKind, Shape};
+use crate::scenes::{Form, Kind, ONE, Pair, Scene};
+use crate::stage::{State, angle};
 
-/// A collider in the world: corners, or a middle and a radius.
+/// A form in the world: corners, or a middle and a radius.
 struct Outline {
     points: Vec<[f64; 2]>,
     radius: f64,
@@ -13,34 +13,35 @@ struct Outline {
     bounds: [f64; 4],
 }
 
-fn outlines(stage: &Stage) -> Vec<Outline> {
+fn metres(pair: Pair) -> [f64; 2] {
+    pair.map(|micro| micro as f64 / ONE as f64)
+}
+
+/// A point turned by an angle and moved.
+fn placed([x, y]: [f64; 2], turned: f64, [ox, oy]: [f64; 2]) -> [f64; 2] {
+    let (sin, cos) = turned.sin_cos();
+    [ox + cos * x - sin * y, oy + sin * x + cos * y]
+}
+
+fn outlines(scene: &Scene, states: &[State]) -> Vec<Outline> {
     let mut all = Vec::new();
-    for (at, &id) in stage.ids.iter().enumerate() {
-        let body = stage.world.body(id).expect("scenes keep their bodies");
-        let ((x, y), (cos, sin)) = (body.position().to_f64(), body.rotation().to_f64());
-        for collider in body.def().colliders {
-            let ((ox, oy), turned) = (collider.offset.to_f64(), collider.angle.to_radians_f64());
-            let (c, s) = (turned.cos(), turned.sin());
-            let place = |[px, py]: [f64; 2]| {
-                let (lx, ly) = (ox + c * px - s * py, oy + s * px + c * py);
-                [x + cos * lx - sin * ly, y + sin * lx + cos * ly]
+    for (body, (thing, state)) in scene.things.iter().zip(states).enumerate() {
+        for part in &thing.parts {
+            let (local, radius) = match &part.form {
+                Form::Disc(radius) => (vec![[0, 0]], *radius as f64 / ONE as f64),
+                Form::Box(w, h) => (vec![[-w / 2, -h / 2], [w / 2, -h / 2], [w / 2, h / 2], [-w / 2, h / 2]], 0.0),
+                Form::Polygon(corners) => (corners.clone(), 0.0),
             };
-            let (local, radius) = match &collider.shape {
-                Shape::Circle { radius } => (vec![[0.0, 0.0]], radius.to_f64()),
-                Shape::Box { width, height } => {
-                    let (w, h) = (width.to_f64() / 2.0, height.to_f64() / 2.0);
-                    (vec![[-w, -h], [w, -h], [w, h], [-w, h]], 0.0)
-                }
-                Shape::Polygon { vertices } => (vertices.iter().map(|v| v.to_f64().into()).collect(), 0.0),
-            };
-            let points: Vec<[f64; 2]> = local.into_iter().map(place).collect();
+            let in_body = |corner| placed(metres(corner), angle(part.facing), metres(part.at));
+            let points: Vec<[f64; 2]> =
+                local.into_iter().map(|corner| placed(in_body(corner), state.angle, state.at)).collect();
             let around = |axis: usize| {
                 let of = points.iter().map(|p| p[axis]);
                 of.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v - radius), b.max(v + radius)])
             };
             let ([left, right], [low, high]) = (around(0), around(1));
-            let dynamic = body.kind() == BodyKind::Dynamic;
-            all.push(Outline { points, radius, body: at, dynamic, bounds: [left, right, low, high] });
+            let dynamic = thing.kind == Kind::Dynamic;
+            all.push(Outline { points, radius, body, dynamic, bounds: [left, right, low, high] });
         }
     }
     all
@@ -83,8 +84,8 @@ fn depth(a: &Outline, b: &Outline) -> f64 {
 }
 
 /// The greatest overlap of two bodies of which one is dynamic, in metres.
-pub fn worst_overlap(stage: &Stage) -> f64 {
-    let mut all = outlines(stage);
+pub fn worst_overlap(scene: &Scene, states: &[State]) -> f64 {
+    let mut all = outlines(scene, states);
     all.sort_by(|a, b| a.bounds[0].total_cmp(&b.bounds[0]));
     let mut worst = 0.0f64;
     for (k, a) in all.iter().enumerate() {
