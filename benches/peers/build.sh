@@ -9,7 +9,7 @@ mkdir -p "$PEERS/bin"
 # build PACKAGE BINARY NAME [FEATURES]: each in a folder of its own, for features of one must not leak into another.
 build() {
   (cd "$here" && CARGO_TARGET_DIR="$PEERS/$3" cargo build --quiet --release --locked --package "$1" ${4:+--features "$4"})
-  cp "$PEERS/$3/release/$2" "$PEERS/bin/$3"
+  cp -f "$PEERS/$3/release/$2" "$PEERS/bin/$3"
 }
 build peer-scenes dump_scenes scenes
 build peer-ours peer-ours ours

@@ -48,7 +48,7 @@ pub fn work_precision(folder: &Path, points: &[Point]) {
             legend: &legend,
             columns: 3,
             floor: -14,
-            common: false,
+            common: true,
         };
         sheet(&folder.join(format!("{file}.svg")), &style, &panels);
     }

@@ -1,6 +1,7 @@
 //! How wrong the engine is, and at what cost: `cargo bench --bench work_precision` writes `benches/report` anew.
 //!
-//! `-- grid`, `-- hard` or `-- features` measures a part only; `-- page` draws what was measured before.
+//! `-- grid`, `-- hard` or `-- features` measures a part only; `-- page` draws what was measured before; `-- peers` reads
+//! what `benches/peers/driver.py` left in `$PEERS`.
 #![allow(
     clippy::disallowed_types,
     clippy::arithmetic_side_effects,
@@ -17,11 +18,13 @@ mod machine;
 mod page;
 mod peers;
 mod plot;
+mod raw;
 mod reference;
 #[path = "../scenes/mod.rs"]
 mod scenes;
 mod stage;
 mod table;
+mod trace;
 mod yardstick;
 
 use std::path::PathBuf;
@@ -36,8 +39,9 @@ fn main() {
         return;
     }
     let parts: Vec<&str> = args.iter().map(String::as_str).filter(|arg| !arg.starts_with('-')).collect();
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let wanted = |part: &str| parts.is_empty() || parts.contains(&part);
-    let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/benches/report"));
+    let folder = root.join("benches/report");
     std::fs::create_dir_all(&folder).expect("the folder is ours");
     let write = |name: &str, text: String| std::fs::write(folder.join(name), text).expect("the folder is ours");
     if wanted("grid") {
@@ -49,7 +53,10 @@ fn main() {
     if wanted("hard") {
         write("hard.csv", hard::csv(&hard::measure()));
     }
-    if parts != ["page"] {
+    if parts.contains(&"peers") {
+        raw::write(&std::env::var_os("PEERS").map_or(root.join("target/peers"), PathBuf::from), &folder);
+        write("peers_machine.txt", machine::describe());
+    } else if parts != ["page"] {
         write("machine.txt", machine::describe());
     }
     page::write(&folder);

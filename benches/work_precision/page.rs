@@ -116,6 +116,10 @@ pub fn write(folder: &Path) {
     }
     page += "\n## The machine\n\n";
     page += &machine;
+    if let Ok(machine) = std::fs::read_to_string(folder.join("peers_machine.txt")) {
+        page += "\nThe runs of all engines:\n\n";
+        page += &machine;
+    }
     page += "\nOther work ran on it at the same time, so compare figures of one run with each other only.\n";
     page += "\n## Commands\n\n";
     page += "| command | writes | takes |\n| --- | --- | --- |\n";

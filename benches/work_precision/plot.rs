@@ -46,7 +46,7 @@ pub struct Sheet<'a> {
     pub columns: usize,
     /// The power of ten at which what is below is drawn.
     pub floor: i32,
-    /// Whether all diagrams have one range of x.
+    /// Whether all diagrams have one range of y.
     pub common: bool,
 }
 
@@ -203,11 +203,15 @@ pub fn sheet(path: &Path, sheet: &Sheet, panels: &[Panel]) {
     let below = head(&root, sheet.title, sheet.legend);
     let (_, body) = root.split_vertically(below);
     let (body, foot) = body.split_vertically(240 * rows as u32);
-    let all = || panels.iter().flat_map(|p| &p.series).flat_map(|s| &s.points);
-    let errors = span(all().map(|p| p[1].max(10f64.powi(sheet.floor))));
+    let points = |panels: &[Panel]| -> Vec<[f64; 2]> {
+        let clip = |&[x, y]: &[f64; 2]| [x, y.max(10f64.powi(sheet.floor))];
+        panels.iter().flat_map(|p| &p.series).flat_map(|s| &s.points).map(clip).collect()
+    };
+    let all = points(panels);
     for (area, one) in body.split_evenly((rows, sheet.columns)).iter().zip(panels) {
-        let own = one.series.iter().flat_map(|s| &s.points).map(|p| p[0]);
-        panel(area, one, if sheet.common { span(all().map(|p| p[0])) } else { span(own) }, errors);
+        let own = points(std::slice::from_ref(one));
+        let errors = span((if sheet.common { &all } else { &own }).iter().map(|p| p[1]));
+        panel(area, one, span(own.iter().map(|p| p[0])), errors);
     }
     foot.draw(&Text::new(sheet.x, (60, 8), text(13))).expect("drawn in memory");
     root.present().unwrap_or_else(|error| panic!("{}: {error}", path.display()));
@@ -215,7 +219,7 @@ pub fn sheet(path: &Path, sheet: &Sheet, panels: &[Panel]) {
 
 /// Rows of dots on one scale.
 pub fn dots(path: &Path, title: &str, x: &str, legend: &[(&str, usize)], rows: &[Row], floor: i32) {
-    let (label, pitch, wide) = (300, 26, 1000);
+    let (label, pitch, wide) = (300, 28, 1000);
     let size = (wide, 66 + pitch * rows.len() as u32 + 60);
     let root = SVGBackend::new(path, size).into_drawing_area();
     root.fill(&WHITE).expect("drawn in memory");
@@ -245,7 +249,8 @@ pub fn dots(path: &Path, title: &str, x: &str, legend: &[(&str, usize)], rows: &
         // The first series is drawn last, on top.
         for (style, value) in row.values.iter().enumerate().rev() {
             if let Some(value) = value {
-                mark(&root, [at(*value), y], style, 5);
+                // Equal values lie beside each other.
+                mark(&root, [at(*value), y + 4 * style as i32 - 6], style, 4);
             }
         }
     }

@@ -82,6 +82,7 @@ pub fn accuracy() -> Vec<Scene> {
         ("typical", exact::typical(), 180),
         ("one-hits-two", exact::one_hits_two(), 180),
         ("corner-on-bar", exact::corner_on_bar(), 30),
+        ("turning-corner", exact::turning_corner(), 60),
         ("gas", exact::gas(50), 600),
         ("stack", exact::stack(10, ONE), 600),
         ("heavy", exact::stack(2, 100 * ONE), 600),
