@@ -5,7 +5,8 @@ use super::{Dice, Form, Kind, MILLI, Micro, ONE, Pair, Part, Scene, Thing, floor
 /// What a scene should do. Lengths are millionths of a metre.
 #[derive(Clone, Copy, Debug)]
 pub enum Should {
-    /// Every dynamic body stays within this of where it began.
+    /// Every dynamic body stays within this of where it began; down it may come by a tenth of the whole's height, if that is
+    /// more.
     Stand(Micro),
     /// Every dynamic body is in the rectangle from here to there at the end.
     StayIn(Pair, Pair),

@@ -104,16 +104,21 @@ impl Ways {
     pub fn new(case: &Case, start: &[State], half: &[State], end: &[State]) -> Ways {
         let metre = |micro: i64| micro as f64 / ONE as f64;
         let far = |a: &State, b: &State| (a.at[0] - b.at[0]).hypot(a.at[1] - b.at[1]);
+        let places = || case.scene.things.iter().enumerate().filter(|(_, t)| t.kind == Kind::Dynamic).map(|(at, _)| at);
+        let heights = || places().map(|at| start[at].at[1]);
+        let tall = heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min);
         let right = |at: usize| {
             let (from, to) = (&start[at], &end[at]);
             match case.should {
-                Should::Stand(within) => far(from, to) < metre(within),
+                Should::Stand(within) => {
+                    let (side, sag) = ((to.at[0] - from.at[0]).abs(), (to.at[1] - from.at[1]).abs());
+                    side < metre(within) && sag < metre(within).max(0.1 * tall)
+                }
                 Should::StayIn(low, high) => (0..2).all(|i| metre(low[i]) <= to.at[i] && to.at[i] <= metre(high[i])),
                 Should::Topple => to.angle - from.angle < -1.0,
                 Should::NotGain => true,
             }
         };
-        let places = || case.scene.things.iter().enumerate().filter(|(_, t)| t.kind == Kind::Dynamic).map(|(at, _)| at);
         let most = |of: &dyn Fn(usize) -> f64| places().map(of).fold(0.0, f64::max);
         Ways {
             drift: most(&|at| (end[at].at[0] - start[at].at[0]).abs()),

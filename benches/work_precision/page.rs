@@ -100,7 +100,9 @@ pub fn write(folder: &Path) {
     }
     if let Some(table) = file("hard.csv") {
         page += "\n## Hard cases\n\n";
-        page += "At 60 ticks/s and 10 substeps, for a minute unless said. Drift and sag: the greatest way of a body sideways \
+        page += "At 60 ticks/s and 10 substeps, for a minute or until it should be over. What should stand survives if no body goes \
+                 farther sideways than half its size, or down by more than that and a tenth of the whole's height; \
+                 what should stay, if nothing is lost. Drift and sag: the greatest way of a body sideways \
                  and down from where it was put; creep: its way in the second half; overlap: the deepest at the end; energy: \
                  the greatest rise of KE + PE above its least so far, as the height to which it would lift everything. Notes: \
                  what the world's status names, and whether the same scene 2²⁰ m and 999 999 900 m away (drift and stop: 10⁶ m) \

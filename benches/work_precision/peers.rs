@@ -144,7 +144,12 @@ fn hard_cases(table: &Table) -> String {
             "" => "no end".into(),
             "true" => {
                 let part = |name, column| table.number(row, column).map(|v| format!("{name} {}", length(v)));
-                let parts = [part("drift", "drift_m"), part("sag", "sag_m"), part("overlap", "overlap_m")];
+                let parts = [
+                    part("drift", "drift_m"),
+                    part("sag", "sag_m"),
+                    part("creep", "creep_in_2nd_half_m"),
+                    part("overlap", "overlap_m"),
+                ];
                 format!("yes: {}", parts.into_iter().flatten().collect::<Vec<_>>().join(", "))
             }
             _ => "**no**".into(),
@@ -222,7 +227,8 @@ pub fn tables(folder: &Path) -> String {
     let version = |row: usize| format!("{} is {}", engines.get(row, "engine"), engines.get(row, "version"));
     page += &(0..engines.len()).map(version).collect::<Vec<_>>().join("; ");
     page += ". All run the same scenes on one thread with sleeping off; the speed below which nothing bounces is as low \
-             as each lets it be. Engines take turns in every round.\n";
+             as each lets it be; Box2D and Rapier count in single precision, as they do by default. Engines take turns in \
+             every round.\n";
     if let Some(table) = file("peers_speed.csv") {
         page += "\n### Time\n\nThe median tick of the best round; in brackets that of the median round, and the mean tick of \
                  the best.\n\n";

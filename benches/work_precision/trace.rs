@@ -44,7 +44,15 @@ impl Trace {
                 let angle = angle + turns * std::f64::consts::TAU;
                 last[at] = State { at: [x, y], angle, velocity: [vx, vy], spin };
             }
-            rows.push((sample[0].as_u64()?, last.clone()));
+            let tick = sample[0].as_u64()?;
+            // What only its own velocities move is where they bring it.
+            let t = tick as f64 / 60.0;
+            for (at, _) in scene.things.iter().enumerate().filter(|(_, thing)| thing.kind == Kind::Kinematic) {
+                let State { at: [x, y], angle, velocity: [vx, vy], spin } = start.state(at);
+                let place = [x + vx * t, y + vy * t];
+                last[at] = State { at: place, angle: angle + spin * t, ..start.state(at) };
+            }
+            rows.push((tick, last.clone()));
         }
         Some(Trace { rows, now: 0, masses: masses(scene) })
     }
