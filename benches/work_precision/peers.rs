@@ -61,14 +61,21 @@ fn speed_dots(folder: &Path, table: &Table) {
         for window in windows {
             let value = |(engine, _): &(&str, &str)| {
                 let row = table.find(&[("scene", scene), ("window", window), ("engine", engine)])?;
-                table.number(row, "mean_ms")
+                table.number(row, "best_ms")
             };
             let when = if window == "all" { String::new() } else { format!(", {window}") };
             rows.push(Row { label: format!("{what}{when}"), values: ENGINES[..4].iter().map(value).collect() });
         }
     }
     let title = "Time per tick at default settings, one thread: farther left is better";
-    dots(&folder.join("speed.svg"), title, "mean of the best round, ms per tick", &legend(4), &rows, -6);
+    dots(
+        &folder.join("speed.svg"),
+        title,
+        "ms of processor time per tick, mean of the best round",
+        &legend(4),
+        &rows,
+        -6,
+    );
 }
 
 /// Error against time by substeps or iterations.
@@ -91,7 +98,7 @@ fn curves(folder: &Path, table: &Table) {
     legend.push(("default", 6));
     let style = Sheet {
         title: "60 ticks/s, substeps or solver iterations 1, 2, 4, 8, 16 and the default. Lower left is better",
-        x: "µs per tick, the mean of the best round",
+        x: "µs of processor time per tick, mean of the best round",
         legend: &legend,
         columns: 3,
         floor: -12,
@@ -179,8 +186,9 @@ fn speed(table: &Table) -> String {
                 };
                 match (table.number(row, "best_ms"), table.get(row, "unsupported")) {
                     (Some(best), _) => {
-                        let [median, mean] = ["median_ms", "mean_ms"].map(|c| table.number(row, c).unwrap_or(f64::NAN));
-                        format!("{best:.3} ({median:.3}; {mean:.3})")
+                        let [median, step] =
+                            ["median_ms", "median_step_ms"].map(|c| table.number(row, c).unwrap_or(f64::NAN));
+                        format!("{best:.3} ({median:.3}; {step:.3})")
                     }
                     (None, what) => format!("no {what}"),
                 }
@@ -230,8 +238,8 @@ pub fn tables(folder: &Path) -> String {
              as each lets it be; Box2D and Rapier count in single precision, as they do by default. Engines take turns in \
              every round.\n";
     if let Some(table) = file("peers_speed.csv") {
-        page += "\n### Time\n\nThe median tick of the best round; in brackets that of the median round, and the mean tick of \
-                 the best.\n\n";
+        page += "\n### Time\n\nProcessor time of the mean tick in the best round; in brackets that of the median round, and the \
+                 median tick by the clock on the wall.\n\n";
         page += &speed(&table);
     }
     if let Some(table) = file("peers_snapshots.csv") {

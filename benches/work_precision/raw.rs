@@ -42,8 +42,10 @@ fn steps(line: &Value, from: usize, to: usize) -> Vec<f64> {
     all[from.min(all.len())..to.min(all.len())].iter().filter_map(Value::as_f64).collect()
 }
 
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
+/// Nanoseconds of processor time a step of a window, by rounds.
+fn mean(lines: &[Value], window: usize, steps: usize) -> Option<Cost> {
+    let rounds: Option<Vec<f64>> = lines.iter().map(|line| line["cpu_ns"][window].as_f64()).collect();
+    Some(Cost::of(&rounds?.iter().map(|ns| ns / steps as f64).collect::<Vec<_>>()))
 }
 
 fn accuracy(runs: &Runs) -> String {
@@ -53,8 +55,8 @@ fn accuracy(runs: &Runs) -> String {
         for ([_, _, engine, setting], lines) in runs.iter().filter(|(k, _)| k[0] == "accuracy" && k[1] == case.name) {
             let Some(mut trace) = Trace::new(&(case.scene)(), &lines[0]) else { continue };
             let error = (case.judge)(&mut trace, (case.seconds * 60.0).round() as u64);
-            let means: Vec<f64> = lines.iter().map(|line| mean(&steps(line, 0, usize::MAX))).collect();
-            let Cost { best, median } = Cost::of(&means);
+            let ticks = lines[0]["steps"].as_u64().unwrap_or(1) as usize;
+            let Some(Cost { best, median }) = mean(lines, 0, ticks) else { continue };
             let same = lines.iter().all(|line| line["final_hash"] == lines[0]["final_hash"]);
             let default = lines[0]["default"].as_bool().unwrap_or(false);
             let setting: u32 = setting.parse().expect("written by two digits");
@@ -67,13 +69,11 @@ fn accuracy(runs: &Runs) -> String {
 }
 
 fn hard(runs: &Runs) -> String {
-    let mut out = String::from(
-        "case,engine,survived,drift_m,sag_m,creep_in_2nd_half_m,overlap_m,end_speed_m_per_s,mean_us_per_step\n",
-    );
+    let mut out = String::from("case,engine,survived,drift_m,sag_m,creep_in_2nd_half_m,overlap_m,end_speed_m_per_s\n");
     for case in all() {
         for ([_, _, engine, _], lines) in runs.iter().filter(|(k, _)| k[0] == "hard" && k[1] == case.name) {
             let Some(trace) = Trace::new(&case.scene, &lines[0]) else {
-                let _ = writeln!(out, "{},{engine},,,,,,,", case.name);
+                let _ = writeln!(out, "{},{engine},,,,,,", case.name);
                 continue;
             };
             let [start, half, end] = trace.thirds();
@@ -87,10 +87,9 @@ fn hard(runs: &Runs) -> String {
             let stands = matches!(case.should, Should::Stand(_)) && finite;
             let way = |v: f64| if stands { format!("{v:.3e}") } else { String::new() };
             let [drift, sag, creep] = [ways.drift, ways.sag, ways.creep].map(way);
-            let time = mean(&steps(&lines[0], 0, usize::MAX)) * 1e-3;
             let _ = writeln!(
                 out,
-                "{},{engine},{survived},{drift},{sag},{creep},{:.3e},{:.3e},{time:.2}",
+                "{},{engine},{survived},{drift},{sag},{creep},{:.3e},{:.3e}",
                 case.name, ways.overlap, ways.speed
             );
         }
@@ -108,22 +107,18 @@ fn windows(peers: &Path, scene: &str) -> Vec<(String, usize, usize)> {
 }
 
 fn speed(peers: &Path, runs: &Runs) -> String {
-    let mut out = String::from("scene,window,engine,best_ms,median_ms,mean_ms,rounds,unsupported\n");
+    let mut out = String::from("scene,window,engine,best_ms,median_ms,median_step_ms,rounds,unsupported\n");
     for ([_, scene, engine, _], lines) in runs.iter().filter(|(k, _)| k[0] == "speed") {
-        for (window, from, to) in windows(peers, scene) {
+        for (at, (window, from, to)) in windows(peers, scene).into_iter().enumerate() {
             if let Some(what) = lines[0]["unsupported"].as_str() {
                 let _ = writeln!(out, "{scene},{window},{engine},,,,,{what}");
                 continue;
             }
-            let rounds: Vec<Vec<f64>> = lines.iter().map(|line| steps(line, from, to)).collect();
-            if rounds.iter().any(Vec::is_empty) {
-                continue;
-            }
-            let medians: Vec<f64> = rounds.iter().map(|ns| Cost::of(ns).median).collect();
-            let means: Vec<f64> = rounds.iter().map(|ns| mean(ns)).collect();
-            let (Cost { best, median }, mean) = (Cost::of(&medians), Cost::of(&means).best);
-            let [best, median, mean] = [best, median, mean].map(|ns| ns * 1e-6);
-            let _ = writeln!(out, "{scene},{window},{engine},{best:.5},{median:.5},{mean:.5},{},", rounds.len());
+            let Some(Cost { best, median }) = mean(lines, at, to - from) else { continue };
+            let steps = lines.iter().map(|line| steps(line, from, to)).filter(|ns| !ns.is_empty());
+            let Some(step) = steps.map(|ns| Cost::of(&ns).median).min_by(f64::total_cmp) else { continue };
+            let [best, median, step] = [best, median, step].map(|ns| ns * 1e-6);
+            let _ = writeln!(out, "{scene},{window},{engine},{best:.5},{median:.5},{step:.5},{},", lines.len());
         }
     }
     out

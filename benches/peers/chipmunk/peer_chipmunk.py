@@ -120,7 +120,21 @@ def snapshot(world, warm):
     }
 
 
-def timed(world, scene, steps):
+def windows(world, scene):
+    """Nanoseconds for which this thread had the processor in each window."""
+    done, ns = 0, []
+    for _, start, end in scene["windows"]:
+        for _ in range(start - done):
+            world.step()
+        t = time.thread_time_ns()
+        for _ in range(end - start):
+            world.step()
+        ns.append(time.thread_time_ns() - t)
+        done = end
+    return ns
+
+
+def steps_of(world, scene, steps):
     bodies, every, now = [world.bodies[i] for i in scene["tracked"]], scene["track_every"], time.perf_counter_ns
     ns, samples = [], [[0, numbers(map(state, bodies))]]
     for k in range(1, steps + 1):
@@ -145,7 +159,11 @@ def main():
         scene = json.load(file)
     steps = scene["steps"] if a.steps is None else a.steps
     world = World(scene, a.substeps)
-    rest = timed(world, scene, steps) if a.snapshot is None else snapshot(world, a.snapshot)
+    if a.snapshot is not None:
+        rest = snapshot(world, a.snapshot)
+    else:
+        cpu = {} if a.group == "hard" else {"cpu_ns": windows(World(scene, a.substeps), scene)}
+        rest = cpu | steps_of(world, scene, steps)
     version = f"Munk2D {pymunk.chipmunk_version}, pymunk {pymunk.version}"
     line = {"protocol": 2, "engine": "chipmunk", "version": version, "scene": a.scene, "steps": steps,
             "bodies": len(scene["bodies"])}
