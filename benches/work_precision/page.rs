@@ -7,6 +7,9 @@ use crate::{draw, peers};
 use std::path::Path;
 
 const HOW: &str = "\
+What moves, turns and bounces by itself is exact but for rounding, whatever the setting; friction and loads get better with \
+substeps and ticks, for time.
+
 An error is how far a scene ends from what mechanics says, in the unit named; a reference in `f64` is used where there is
 no formula. Time is that which the thread had the processor, the best of rounds in which all settings take turns.
 ";
@@ -90,6 +93,8 @@ pub fn write(folder: &Path) {
     page += "Written by `cargo bench --bench work_precision`";
     page += " and `benches/peers/run.sh`; do not edit. The figures are in the `.csv` files beside this page.\n\n";
     page += &peers::summary(folder);
+    page += "Below: [work and precision](#work-and-precision), [hard cases](#hard-cases), [other engines](#other-engines), \
+             [what features cost](#what-features-cost), [the machine](#the-machine), [commands](#commands).\n\n";
     page += "## Work and precision\n\n";
     page += HOW;
     if let Some(points) = file("work_precision.csv").map(|table| grid::read(&table)) {
@@ -125,9 +130,9 @@ pub fn write(folder: &Path) {
     page += "\nOther work ran on it at the same time, so compare figures of one run with each other only.\n";
     page += "\n## Commands\n\n";
     page += "| command | writes | takes |\n| --- | --- | --- |\n";
-    page += "| `cargo bench --bench work_precision` | everything but the peers' figures | 4 min |\n";
+    page += "| `cargo bench --bench work_precision` | everything but the peers' figures | 4 min of processor time |\n";
     page += "| `cargo bench --bench work_precision -- grid` (or `hard`, `features`) | that part | |\n";
     page += "| `cargo bench --bench work_precision -- page` | diagrams and this page from the `.csv` files | 1 s |\n";
-    page += "| `benches/peers/run.sh` | the peers' figures; see [its page](../peers/README.md) | 15 min, the first time 30 |\n";
+    page += "| `benches/peers/run.sh` | the peers' figures; see [its page](../peers/README.md) | 20 min, and 5 to 20 to build |\n";
     std::fs::write(folder.join("README.md"), page).expect("the folder is ours");
 }
