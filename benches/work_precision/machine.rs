@@ -16,14 +16,14 @@ fn processor(name: &str) -> String {
     line.and_then(|line| line.split(':').nth(1)).unwrap_or("not known").trim().to_string()
 }
 
-/// As a Markdown list.
-pub fn describe() -> String {
+/// As a Markdown list; `built` is how.
+pub fn describe(built: &str) -> String {
     let cores = std::thread::available_parallelism().map_or(0, usize::from);
     let rustc = says(option_env!("RUSTC").unwrap_or("rustc"), &["--version"]);
     let load = std::fs::read_to_string("/proc/loadavg").unwrap_or_default();
     let load = load.split(' ').next().unwrap_or("not known");
     format!(
-        "* {} (family {}, model {}), {cores} cores, {}\n* {rustc}, profile `bench`: thin LTO, one codegen unit\n* {}, load {load}\n",
+        "* {} (family {}, model {}), {cores} cores, {}\n* {rustc}, {built}\n* {}, load {load}\n",
         processor("model name"),
         processor("cpu family"),
         processor("model"),

@@ -55,9 +55,9 @@ fn main() {
     }
     if parts.contains(&"peers") {
         raw::write(&std::env::var_os("PEERS").map_or(root.join("target/peers"), PathBuf::from), &folder);
-        write("peers_machine.txt", machine::describe());
+        write("peers_machine.txt", machine::describe("optimisation level 3, one codegen unit, no LTO"));
     } else if parts != ["page"] {
-        write("machine.txt", machine::describe());
+        write("machine.txt", machine::describe("profile `bench`: thin LTO, one codegen unit"));
     }
     page::write(&folder);
 }

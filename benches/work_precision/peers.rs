@@ -54,10 +54,12 @@ fn accuracy_dots(folder: &Path, table: &Table) {
 fn speed_dots(folder: &Path, table: &Table) {
     let mut rows = Vec::new();
     for (scene, what) in SPEED {
-        let all = || (0..table.len()).filter(|&row| table.get(row, "scene") == scene);
-        let mut windows: Vec<&str> = all().map(|row| table.get(row, "window")).collect();
-        windows.sort();
-        windows.dedup();
+        let mut windows: Vec<&str> = Vec::new();
+        for row in (0..table.len()).filter(|&row| table.get(row, "scene") == scene) {
+            if !windows.contains(&table.get(row, "window")) {
+                windows.push(table.get(row, "window"));
+            }
+        }
         for window in windows {
             let value = |(engine, _): &(&str, &str)| {
                 let row = table.find(&[("scene", scene), ("window", window), ("engine", engine)])?;
