@@ -127,12 +127,13 @@ pub fn write(folder: &Path) {
         page += "\nThe runs of all engines:\n\n";
         page += &machine;
     }
-    page += "\nOther work ran on it at the same time, so compare figures of one run with each other only.\n";
+    page += "\nThe load is that of the end; above 1 other work ran at the same time. Compare figures of one run with each other \
+             only.\n";
     page += "\n## Commands\n\n";
     page += "| command | writes | takes |\n| --- | --- | --- |\n";
     page += "| `cargo bench --bench work_precision` | everything but the peers' figures | 4 min of processor time |\n";
     page += "| `cargo bench --bench work_precision -- grid` (or `hard`, `features`) | that part | |\n";
     page += "| `cargo bench --bench work_precision -- page` | diagrams and this page from the `.csv` files | 1 s |\n";
-    page += "| `benches/peers/run.sh` | the peers' figures; see [its page](../peers/README.md) | 20 min, and 5 to 20 to build |\n";
+    page += "| `benches/peers/run.sh` | the peers' figures; see [its page](../peers/README.md) | 25 min, and 5 to 20 to build |\n";
     std::fs::write(folder.join("README.md"), page).expect("the folder is ours");
 }
