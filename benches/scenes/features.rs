@@ -1,6 +1,6 @@
 //! A thousand boxes, at rest and falling: what features cost is measured on them.
 
-use super::{Dice, MILLI, ONE, Scene, Thing};
+use super::{Dice, Scene, Thing, MILLI, ONE};
 
 /// Stacks of 10 boxes of 1 m, 20 cm apart.
 pub fn stacks() -> Scene {

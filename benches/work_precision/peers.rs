@@ -66,7 +66,10 @@ fn speed_dots(folder: &Path, table: &Table) {
                 table.number(row, "best_ms")
             };
             let when = if window == "all" { String::new() } else { format!(", {window}") };
-            rows.push(Row { label: format!("{what}{when}"), values: ENGINES[..4].iter().map(value).collect() });
+            let ours = table.find(&[("scene", scene), ("window", window), ("engine", "ours")]);
+            let lacks = ours.map_or("", |row| table.get(row, "unsupported"));
+            let lacks = if lacks.is_empty() { String::new() } else { format!(" (tamias2d: no {lacks})") };
+            rows.push(Row { label: format!("{what}{when}{lacks}"), values: ENGINES[..4].iter().map(value).collect() });
         }
     }
     let title = "Time per tick at default settings, one thread: farther left is better";

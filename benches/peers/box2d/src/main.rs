@@ -107,14 +107,7 @@ impl Engine for B2 {
             let id = self.bodies[b];
             let (p, q) = (b2Body_GetPosition(id), b2Body_GetRotation(id));
             let (l, w) = (b2Body_GetLinearVelocity(id), b2Body_GetAngularVelocity(id));
-            [
-                p.x as f64,
-                p.y as f64,
-                (q.s as f64).atan2(q.c as f64),
-                l.x as f64,
-                l.y as f64,
-                w as f64,
-            ]
+            [p.x as f64, p.y as f64, (q.s as f64).atan2(q.c as f64), l.x as f64, l.y as f64, w as f64]
         }
     }
 

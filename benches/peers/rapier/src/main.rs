@@ -66,14 +66,9 @@ fn build(s: &Scene, args: &[String]) -> Result<Ra, &'static str> {
             let c = match g {
                 Geom::Box(x, y) => ColliderBuilder::cuboid(*x as f32, *y as f32),
                 Geom::Circle(r) => ColliderBuilder::ball(*r as f32),
-                Geom::Poly(p) => {
-                    ColliderBuilder::convex_polyline(p.iter().map(|p| v(*p)).collect()).unwrap()
-                }
+                Geom::Poly(p) => ColliderBuilder::convex_polyline(p.iter().map(|p| v(*p)).collect()).unwrap(),
             };
-            let mut c = c
-                .density(b.density as f32)
-                .friction(s.friction as f32)
-                .restitution(s.restitution as f32);
+            let mut c = c.density(b.density as f32).friction(s.friction as f32).restitution(s.restitution as f32);
             if !b.collide {
                 c = c.collision_groups(InteractionGroups::none());
             }
@@ -82,12 +77,8 @@ fn build(s: &Scene, args: &[String]) -> Result<Ra, &'static str> {
         handles.push(h);
     }
     for j in &s.hinges {
-        let joint = RevoluteJointBuilder::new()
-            .local_anchor1(v(j.la))
-            .local_anchor2(v(j.lb))
-            .contacts_enabled(false);
-        w.impulse_joints
-            .insert(handles[j.a], handles[j.b], joint, true);
+        let joint = RevoluteJointBuilder::new().local_anchor1(v(j.la)).local_anchor2(v(j.lb)).contacts_enabled(false);
+        w.impulse_joints.insert(handles[j.a], handles[j.b], joint, true);
     }
     Ok(Ra { w, pipeline: PhysicsPipeline::new(), handles })
 }
@@ -120,14 +111,7 @@ impl Engine for Ra {
     fn state(&self, b: usize) -> State {
         let rb = &self.w.bodies[self.handles[b]];
         let (p, q, l) = (rb.translation(), rb.rotation(), rb.linvel());
-        [
-            p.x as f64,
-            p.y as f64,
-            (q.im as f64).atan2(q.re as f64),
-            l.x as f64,
-            l.y as f64,
-            rb.angvel() as f64,
-        ]
+        [p.x as f64, p.y as f64, (q.im as f64).atan2(q.re as f64), l.x as f64, l.y as f64, rb.angvel() as f64]
     }
 
     fn snapshot(&mut self, reps: usize, probe: &mut dyn FnMut(&mut Self) -> u64) -> Snapshot {

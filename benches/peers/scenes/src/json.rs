@@ -24,10 +24,9 @@ impl Scene {
                 .map(|g| match g {
                     Geom::Box(x, y) => format!("{{\"box\":[{},{}]}}", num(*x), num(*y)),
                     Geom::Circle(r) => format!("{{\"circle\":{}}}", num(*r)),
-                    Geom::Poly(p) => format!(
-                        "{{\"poly\":[{}]}}",
-                        p.iter().map(|v| pair(*v)).collect::<Vec<_>>().join(",")
-                    ),
+                    Geom::Poly(p) => {
+                        format!("{{\"poly\":[{}]}}", p.iter().map(|v| pair(*v)).collect::<Vec<_>>().join(","))
+                    }
                 })
                 .collect();
             format!(
@@ -37,17 +36,11 @@ impl Scene {
                 b.collide, shapes.join(",")
             )
         };
-        let win: Vec<String> = self
-            .windows
-            .iter()
-            .map(|(n, a, b)| format!("[\"{n}\",{a},{b}]"))
-            .collect();
+        let win: Vec<String> = self.windows.iter().map(|(n, a, b)| format!("[\"{n}\",{a},{b}]")).collect();
         let hinges: Vec<String> = self
             .hinges
             .iter()
-            .map(|h| {
-                format!("{{\"a\":{},\"b\":{},\"la\":{},\"lb\":{}}}", h.a, h.b, pair(h.la), pair(h.lb))
-            })
+            .map(|h| format!("{{\"a\":{},\"b\":{},\"la\":{},\"lb\":{}}}", h.a, h.b, pair(h.la), pair(h.lb)))
             .collect();
         let tracked: Vec<String> = self.tracked().iter().map(|i| i.to_string()).collect();
         format!(

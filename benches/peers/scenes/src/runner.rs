@@ -68,7 +68,11 @@ fn snapshot<E: Engine>(mut engine: E, ids: &[usize], warm: usize, reps: usize) -
         let mut ns = cost.ns.clone();
         ns.sort();
         let (name, median, bytes) = (cost.name, ns[ns.len() / 2], cost.bytes);
-        format!("{{\"op\":\"{name}\",\"median_ns\":{median},\"min_ns\":{},\"reps\":{},\"bytes\":{bytes}}}", ns[0], ns.len())
+        format!(
+            "{{\"op\":\"{name}\",\"median_ns\":{median},\"min_ns\":{},\"reps\":{},\"bytes\":{bytes}}}",
+            ns[0],
+            ns.len()
+        )
     };
     let costs: Vec<String> = costs.iter().map(cost).collect();
     let facts: Vec<String> = facts.iter().map(|(name, is)| format!("\"{name}\":{is}")).collect();

@@ -13,10 +13,7 @@ impl Lcg {
         l
     }
     fn next(&mut self) -> u32 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 32) as u32
     }
     fn unit(&mut self) -> f64 {
@@ -49,8 +46,7 @@ fn random_convex(rng: &mut Lcg, n: usize, r: f64) -> Vec<V> {
     let phase = rng.range(0.0, std::f64::consts::TAU);
     let mut pts: Vec<V> = (0..n)
         .map(|k| {
-            let a = phase
-                + std::f64::consts::TAU * (k as f64 + rng.range(-0.2, 0.2)) / n as f64;
+            let a = phase + std::f64::consts::TAU * (k as f64 + rng.range(-0.2, 0.2)) / n as f64;
             [r * a.cos(), r * a.sin()]
         })
         .collect();
@@ -149,7 +145,8 @@ fn free_flight() -> Scene {
 fn tumbler() -> Scene {
     let mut s = Scene::new("s5_tumbler500", "speed", 900);
     s.windows = vec![("tumbling", 300, 900)];
-    let wall = |x: f64, y: f64, w: f64, h: f64| Poly(vec![[x - w, y - h], [x + w, y - h], [x + w, y + h], [x - w, y + h]]);
+    let wall =
+        |x: f64, y: f64, w: f64, h: f64| Poly(vec![[x - w, y - h], [x + w, y - h], [x + w, y + h], [x - w, y + h]]);
     let mut drum = Body::new(Kinematic, 0.0, 0.0, wall(10.0, 0.0, 0.5, 10.0));
     drum.shapes.push(wall(-10.0, 0.0, 0.5, 10.0));
     drum.shapes.push(wall(0.0, 10.0, 10.0, 0.5));
@@ -192,12 +189,7 @@ fn chain() -> Scene {
     }
     for i in 0..n {
         let (a, b) = (pt[i], pt[i + 1]);
-        let mut l = Body::new(
-            Dynamic,
-            (a[0] + b[0]) * 0.5,
-            (a[1] + b[1]) * 0.5,
-            Box(0.5, 0.125),
-        );
+        let mut l = Body::new(Dynamic, (a[0] + b[0]) * 0.5, (a[1] + b[1]) * 0.5, Box(0.5, 0.125));
         l.angle = (b[1] - a[1]).atan2(b[0] - a[0]);
         l.collide = false;
         s.bodies.push(l);
