@@ -1,6 +1,6 @@
 //! Scenes whose outcome is known: by a closed form, or by an equation that is easily solved.
 
-use super::{floor, polygon, room, Dice, Form, Kind, Micro, Pair, Scene, Thing, MILLI, ONE};
+use super::{Dice, Form, Kind, MILLI, Micro, ONE, Pair, Scene, Thing, floor, polygon, room};
 
 /// 10 m/s to the right and up.
 pub fn throw() -> Scene {

@@ -1,6 +1,6 @@
 //! A thousand boxes, at rest and falling: what features cost is measured on them.
 
-use super::{Dice, Scene, Thing, MILLI, ONE};
+use super::{Dice, MILLI, ONE, Scene, Thing};
 
 /// Stacks of 10 boxes of 1 m, 20 cm apart.
 pub fn stacks() -> Scene {

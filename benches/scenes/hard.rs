@@ -1,6 +1,6 @@
 //! Scenes that solvers find hard, and what each of them should do.
 
-use super::{floor, polygon, room, Dice, Form, Kind, Micro, Pair, Part, Scene, Thing, MILLI, ONE};
+use super::{Dice, Form, Kind, MILLI, Micro, ONE, Pair, Part, Scene, Thing, floor, polygon, room};
 
 /// What a scene should do. Lengths are millionths of a metre.
 #[derive(Clone, Copy, Debug)]

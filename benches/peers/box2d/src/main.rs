@@ -3,7 +3,7 @@
 //! Sleeping is off, and the speed below which nothing bounces is 0 instead of 1 m/s: else it could not be compared.
 
 use boxdd_sys::ffi::*;
-use peer_scenes::runner::{count, run, Cost, Engine, Snapshot, State};
+use peer_scenes::runner::{Cost, Engine, Snapshot, State, count, run};
 use peer_scenes::{Geom, Kind, Scene};
 use std::time::Instant;
 

@@ -1,6 +1,6 @@
 //! This project's engine behind the peers' protocol. `--substeps N`: other substeps than the default.
 
-use peer_scenes::runner::{count, run, Cost, Engine, Snapshot, State};
+use peer_scenes::runner::{Cost, Engine, Snapshot, State, count, run};
 use peer_scenes::{Body, Geom, Kind, Scene, V};
 use std::time::Instant;
 use tamias2d::{

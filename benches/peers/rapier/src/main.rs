@@ -1,6 +1,6 @@
 //! Rapier behind the peers' protocol. `--substeps N`: other solver iterations than its default of 4. Sleeping is off.
 
-use peer_scenes::runner::{count, run, Cost, Engine, Snapshot, State};
+use peer_scenes::runner::{Cost, Engine, Snapshot, State, count, run};
 use peer_scenes::{Geom, Kind, Scene};
 use rapier2d::prelude::*;
 use serde::{Deserialize, Serialize};

@@ -4,11 +4,7 @@ use crate::{Body, Geom, Kind, Scene, V};
 
 /// A number; `null` if there is none.
 pub fn num(x: f64) -> String {
-    if x.is_finite() {
-        format!("{x:?}")
-    } else {
-        "null".into()
-    }
+    if x.is_finite() { format!("{x:?}") } else { "null".into() }
 }
 
 fn pair(v: V) -> String {
@@ -31,9 +27,18 @@ impl Scene {
                 .collect();
             format!(
                 "{{\"kind\":\"{}\",\"pos\":{},\"angle\":{},\"vel\":{},\"omega\":{},\"density\":{},\"collide\":{},\"shapes\":[{}]}}",
-                match b.kind { Kind::Static => "static", Kind::Dynamic => "dynamic", Kind::Kinematic => "kinematic" },
-                pair(b.pos), num(b.angle), pair(b.vel), num(b.omega), num(b.density),
-                b.collide, shapes.join(",")
+                match b.kind {
+                    Kind::Static => "static",
+                    Kind::Dynamic => "dynamic",
+                    Kind::Kinematic => "kinematic",
+                },
+                pair(b.pos),
+                num(b.angle),
+                pair(b.vel),
+                num(b.omega),
+                num(b.density),
+                b.collide,
+                shapes.join(",")
             )
         };
         let win: Vec<String> = self.windows.iter().map(|(n, a, b)| format!("[\"{n}\",{a},{b}]")).collect();
@@ -45,8 +50,16 @@ impl Scene {
         let tracked: Vec<String> = self.tracked().iter().map(|i| i.to_string()).collect();
         format!(
             "{{\"name\":\"{}\",\"group\":\"{}\",\"gravity\":{},\"dt\":{},\"friction\":{},\"restitution\":{},\"steps\":{},\"windows\":[{}],\"track_every\":{},\"tracked\":[{}],\"hinges\":[{}],\"bodies\":[{}]}}",
-            self.name, self.group, pair(self.gravity), num(self.dt), num(self.friction),
-            num(self.restitution), self.steps, win.join(","), self.track_every, tracked.join(","),
+            self.name,
+            self.group,
+            pair(self.gravity),
+            num(self.dt),
+            num(self.friction),
+            num(self.restitution),
+            self.steps,
+            win.join(","),
+            self.track_every,
+            tracked.join(","),
             hinges.join(","),
             self.bodies.iter().map(body).collect::<Vec<_>>().join(",\n")
         )

@@ -1,7 +1,7 @@
 //! The protocol: `PROGRAM --group GROUP --scene NAME [--steps N] [--snapshot WARM]` runs a scene and prints a line of JSON.
 
-use crate::json::num;
 use crate::Scene;
+use crate::json::num;
 use cpu_time::ThreadTime;
 use std::time::Instant;
 

@@ -1,6 +1,6 @@
 //! Scenes taken from the project's benches. Their names are those of the benches' cases.
 
-use crate::shared::{self, exact, hard, Form, Micro, Pair, Part, MILLI, ONE};
+use crate::shared::{self, Form, MILLI, Micro, ONE, Pair, Part, exact, hard};
 use crate::{Body, Geom, Kind, Scene, V};
 
 fn metres(pair: Pair) -> V {
