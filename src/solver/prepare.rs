@@ -76,8 +76,8 @@ impl<'p> Joint<'p> {
     }
 
     /// Writes the contact into a lane of a block. `old` is the pair's contact of the last tick, or an empty one.
-    // Into preparation, which is a fifth of a tick at rest, and once more into what few contacts need.
-    #[inline(always)]
+    // Once: where it is copied into its callers, its own parts are no longer put into it.
+    #[inline(never)]
     pub(crate) fn write(&self, block: &mut Block, i: usize, old: &Contact, friction: i64, scales: &Scales) {
         for axis in 0..2 {
             block.bodies[axis][i] = self.places[axis];
