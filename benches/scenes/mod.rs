@@ -79,6 +79,8 @@ pub struct Scene {
     pub things: Vec<Thing>,
     /// Points that pull by μ/d²: where, and μ in m³/s².
     pub attractors: Vec<(Pair, Micro)>,
+    /// Whether what rests falls asleep.
+    pub sleeping: bool,
 }
 
 impl Part {
@@ -139,7 +141,14 @@ impl Thing {
 impl Scene {
     /// A scene of these under gravity, with friction 0.6 and no restitution.
     pub fn new(things: Vec<Thing>) -> Scene {
-        Scene { gravity: [0, -G], friction: 600 * MILLI, restitution: 0, things, attractors: Vec::new() }
+        Scene {
+            gravity: [0, -G],
+            friction: 600 * MILLI,
+            restitution: 0,
+            things,
+            attractors: Vec::new(),
+            sleeping: false,
+        }
     }
 
     /// The same without gravity and friction.

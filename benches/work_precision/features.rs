@@ -32,6 +32,7 @@ const FEATURES: &[Feature] = &[
     Feature { name: "restitution 0.3", change: |s| s.restitution = 300 * MILLI, then: Then::Nothing },
     Feature { name: "damping", change: |s| s.things.iter_mut().for_each(|t| t.damping = damped(t.kind)), then: Then::Nothing },
     Feature { name: "an attractor", change: |s| s.attractors.push(([0, -6_371_000 * ONE], 1_000_000 * ONE)), then: Then::Nothing },
+    Feature { name: "sleeping", change: |s| s.sleeping = true, then: Then::Nothing },
     Feature { name: "hash of every tick", change: |_| {}, then: Then::Hash },
     Feature { name: "save of every tick", change: |_| {}, then: Then::Save },
     Feature { name: "recording", change: |_| {}, then: Then::Record },

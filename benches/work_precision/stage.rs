@@ -3,8 +3,8 @@
 use crate::scenes::{Form, Kind, Micro, Pair, Part, Scene, Thing};
 use std::str::FromStr;
 use tamias2d::{
-    Angle, Attractor, BodyDef, BodyId, BodyKind, ColliderDef, Commands, Length, NumError, Radians, Shape, Vec2, World,
-    WorldDef,
+    Angle, Attractor, BodyDef, BodyId, BodyKind, ColliderDef, Commands, Length, NumError, Radians, Shape, Sleeping,
+    Vec2, World, WorldDef,
 };
 
 /// Ticks per second and substeps per tick.
@@ -116,7 +116,8 @@ pub trait Trial {
 impl Stage {
     pub fn new(scene: &Scene, setting: Setting) -> Stage {
         let Setting { rate, substeps } = setting;
-        let def = WorldDef { gravity: pair(scene.gravity), tick_rate: rate, substeps, ..WorldDef::default() };
+        let sleeping = scene.sleeping.then(Sleeping::default);
+        let def = WorldDef { gravity: pair(scene.gravity), tick_rate: rate, substeps, sleeping, ..WorldDef::default() };
         let mut world = World::new(&def).expect("scenes are accepted");
         let mut create = |thing: &Thing| world.create_body(&body(scene, thing)).expect("scenes are accepted");
         let ids = scene.things.iter().map(&mut create).collect();
