@@ -506,7 +506,7 @@ struct Forge {
 
 impl Forge {
     fn new(tick_rate: u32) -> Forge {
-        Forge::of(1, LAW, tick_rate, 0)
+        Forge::of(REPLAY_VERSION, LAW, tick_rate, 0)
     }
 
     fn of(version: u32, law: u32, tick_rate: u32, zero: u32) -> Forge {
@@ -673,21 +673,24 @@ fn a_command_that_is_refused_or_is_none_is_named() {
 fn other_versions_laws_and_tick_rates_are_refused() {
     let file = |forge: Forge| forge.world(&start()).idle(idle_hashes()[0]).end(1);
     assert_eq!(verify(&file(Forge::new(60))).expect("it plays").ticks, 1);
-    assert!(matches!(error(&file(Forge::of(2, LAW, 60, 0))), ReplayError::Version { found: 2, known: 1 }));
+    assert!(matches!(error(&file(Forge::of(1, LAW, 60, 0))), ReplayError::Version { found: 1, known: REPLAY_VERSION }));
     assert_eq!(
-        error(&file(Forge::of(2, LAW, 60, 0))).to_string(),
-        "replay of format version 2, this build reads version 1"
+        error(&file(Forge::of(1, LAW, 60, 0))).to_string(),
+        "replay of format version 1, this build reads version 2"
     );
-    assert!(matches!(error(&file(Forge::of(1, LAW + 1, 60, 0))), ReplayError::Law { known: LAW, .. }));
+    assert!(matches!(error(&file(Forge::of(REPLAY_VERSION, LAW + 1, 60, 0))), ReplayError::Law { known: LAW, .. }));
     assert_eq!(
-        error(&file(Forge::of(1, 7, 60, 0))).to_string(),
+        error(&file(Forge::of(REPLAY_VERSION, 7, 60, 0))).to_string(),
         format!("replay under arithmetic law 7, this build computes by law {LAW}")
     );
     assert_eq!(
         error(&file(Forge::new(61))).to_string(),
         "replay corrupt at tick 0, byte 32: its tick rate is not the header's"
     );
-    assert!(matches!(error(&file(Forge::of(1, LAW, 60, 1))), ReplayError::Corrupt { tick: 0, offset: 0, .. }));
+    assert!(matches!(
+        error(&file(Forge::of(REPLAY_VERSION, LAW, 60, 1))),
+        ReplayError::Corrupt { tick: 0, offset: 0, .. }
+    ));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use common::{Rng, Storm, acc, at, disc, measure, newton_seconds, newtons, num, r
 use proptest::prelude::{ProptestConfig, any, prop_assert, prop_assert_eq, prop_assert_ne, proptest};
 use tamias2d::{
     Angle, Attractor, AttractorId, BodyDef, BodyId, BodyKind, ColliderDef, ColliderId, CommandError, Commands,
-    DecodeError, Filter, HashPart, Integrator, Sleeping, Vec2, World, WorldDef,
+    DecodeError, Filter, HashPart, Integrator, LAW, SAVE_VERSION, Sleeping, Vec2, World, WorldDef,
 };
 
 #[global_allocator]
@@ -230,8 +230,8 @@ fn every_flipped_bit_of_a_save_is_refused_and_a_forged_one_is_a_world_or_refused
             assert!(largest <= save.len().max(8192), "byte {at} bit {bit} allocates {largest}");
             match at {
                 0..8 => assert_eq!(error, DecodeError::NotASave),
-                8..12 => assert!(matches!(error, DecodeError::Version { known: 4, .. }), "{error}"),
-                12..16 => assert!(matches!(error, DecodeError::Law { known: 4, .. }), "{error}"),
+                8..12 => assert!(matches!(error, DecodeError::Version { known: SAVE_VERSION, .. }), "{error}"),
+                12..16 => assert!(matches!(error, DecodeError::Law { known: LAW, .. }), "{error}"),
                 _ => {
                     let forged = at < save.len() - 8 && forge(&mut bytes);
                     worlds += u32::from(forged);
