@@ -152,8 +152,8 @@ fn loaded_bed(columns: u32, rows: u32, mass: f64) -> Scene {
 
 #[test]
 fn a_heavy_lid_on_a_bed_of_light_boxes_stands() {
-    // Sideways while the load comes onto it, in the first ticks: 2.4 cm.
-    stands("2000 kg on 4 by 4", &mut loaded_bed(4, 4, 2000.0), 20, 0.02, 0.03);
+    // Sideways while the load comes onto it, in the first ticks: 0.6 cm; by chance up to 2.4 as details of the solve changed.
+    stands("2000 kg on 4 by 4", &mut loaded_bed(4, 4, 2000.0), 20, 0.02, 0.02);
 }
 
 #[test]

@@ -338,8 +338,8 @@ fn gains(sleeping: Option<Sleeping>) -> (f64, f64, usize) {
     add(&mut world, fixed(0.0, -1.0, rectangle(200.0, 2.0)));
     pile(&mut world, 50, 21);
     let (mut most, mut waking, mut wakes) = (0.0f64, 0.0f64, 0);
-    for tick in 0..1500 {
-        if tick > 400 && tick % 90 == 0 {
+    for tick in 0..3600 {
+        if tick > 400 && tick % 240 == 0 {
             let ball = solid(-3.0 + (tick % 7) as f64, 16.0, surface(disc(0.4), 0.6, 0.2));
             add(&mut world, moving(ball, (tick % 5) as f64 - 2.0, -8.0));
         }
@@ -684,7 +684,7 @@ fn twins_sleep_and_wake_alike() {
     let (mut one, mut saved, mut cloned) = (start(), start(), start());
     let mut buffer = start();
     let (mut slept, mut woke) = (0, 0);
-    for tick in 0..800 {
+    for tick in 0..1100 {
         for world in [&mut one, &mut saved, &mut cloned] {
             script(world, tick);
         }

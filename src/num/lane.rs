@@ -57,10 +57,13 @@ pub(crate) const fn bounded(v: i64) -> i64 {
     clamp(v, -(1 << 60), 1 << 60)
 }
 
-/// A body's velocities in the sweeps, limited to ±2⁵⁷. Range: |v| < 2⁶³ − 2⁵⁷.
+/// The bound of a body's velocities in the sweeps, 512 m/s in Q48.
+pub(crate) const HELD: i64 = 1 << 57;
+
+/// A body's velocities in the sweeps, limited to ±[`HELD`]. Range: |v| < 2⁶³ − 2⁵⁷.
 #[inline(always)]
 pub(crate) fn held(v: [i64; 3]) -> [i64; 3] {
-    const LIMIT: i64 = 1 << 57;
+    const LIMIT: i64 = HELD;
     // One comparison for all three that is nearly never true.
     if ((v[0] + LIMIT) | (v[1] + LIMIT) | (v[2] + LIMIT)) as u64 >= 2 * LIMIT as u64 {
         return v.map(|v| clamp(v, -LIMIT, LIMIT));

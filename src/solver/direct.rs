@@ -18,7 +18,7 @@ use super::mobility::Mobility;
 use super::mover::{Mover, Movers};
 use super::rows::{Block, LANES};
 use super::scales::{SLOP, Scales};
-use crate::num::lane::{clamp, deeper, limit, mul, next, round, sub};
+use crate::num::lane::{self, clamp, deeper, limit, mul, next, round, sub};
 use crate::num::round_shift;
 
 /// How many steps a solve may take, and how often one is halved.
@@ -26,6 +26,10 @@ const ROUNDS: u32 = 8;
 const HALVINGS: u32 = 12;
 /// How fast a row at its limit may be left to go, Q20: what the rounding of reads makes.
 const STILL: i64 = 16;
+/// How often friction may be limited anew by loads that came of it, and what it may lose: 1/4 m/s, Q20; the last time an eighth
+/// of the island's greatest load.
+const HOLDS: u32 = 4;
+const CUT: i64 = 1 << 18;
 /// How often an island is swept instead, when it has had its share of the tick or is beyond what numbers hold.
 const SWEEPS: u32 = 4;
 /// For how many ticks on end an island may be laborious, and what its contacts keep of it then: they are swept as long as
@@ -123,16 +127,32 @@ impl Island {
     /// Finds what pushes, and how much. Whether all stayed in its range; all is as before if not.
     fn solve<const BIASED: bool>(&mut self, blocks: &mut [Block], movers: &mut [Mover], scales: &Scales) -> bool {
         self.pushes &= !BIASED;
+        self.over = false;
         self.remember(blocks, movers);
         self.look::<BIASED>(blocks, movers, scales);
+        for again in (0..HOLDS).rev() {
+            if !self.rounds::<BIASED>(blocks, movers, scales) || self.over {
+                break;
+            }
+            let (cut, most) = self.hold(blocks, movers);
+            if cut <= CUT || again == 0 && cut <= most >> 3 {
+                return true;
+            }
+            self.look::<BIASED>(blocks, movers, scales);
+        }
+        self.restore(blocks, movers);
+        self.tired = true;
+        false
+    }
+
+    /// Newton steps with the limits that friction has; false if the equations have no solution in range.
+    fn rounds<const BIASED: bool>(&mut self, blocks: &mut [Block], movers: &mut [Mover], scales: &Scales) -> bool {
         let mut whole = false;
         for _ in 0..ROUNDS {
             if !self.choose(blocks) && whole {
                 break;
             }
             if !self.direct() {
-                self.restore(blocks, movers);
-                self.tired = true;
                 return false;
             }
             let mut leads = false;
@@ -150,7 +170,6 @@ impl Island {
                 break;
             }
         }
-        self.hold(blocks, movers);
         true
     }
 
@@ -253,7 +272,7 @@ impl Island {
 
     /// Goes a 2^`shorter`th of the way from where the round began, within the limits. Whether that is all of it.
     fn step(&mut self, shorter: u32, blocks: &mut [Block], movers: &mut [Mover]) -> bool {
-        let mut whole = shorter == 0;
+        let (mut whole, mut over) = (shorter == 0, false);
         self.takes(self.contacts.len() as u64);
         for joined in &self.contacts {
             let (block, i) = (&mut blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
@@ -267,8 +286,9 @@ impl Island {
                 whole &= (least..=most).contains(&then);
                 change[row] = sub(clamp(then, least, most), impulse(block, i, row)) as i32;
             }
-            give(block, i, movers, change);
+            over |= give(block, i, movers, change);
         }
+        self.over |= over;
         whole
     }
 
@@ -287,14 +307,21 @@ impl Island {
         work > 0
     }
 
-    /// Limits friction by the loads as they are now.
-    fn hold(&self, blocks: &mut [Block], movers: &mut [Mover]) {
-        for joined in &self.contacts {
+    /// Limits friction by the loads as they are now; how much that takes away at most, and the greatest load. The equations had
+    /// it, as the loads before allowed: what it held would go, and where loads and friction raise each other it would fly.
+    fn hold(&mut self, blocks: &mut [Block], movers: &mut [Mover]) -> (i64, i64) {
+        let (mut most_cut, mut most) = (0, 0);
+        for joined in &mut self.contacts {
             let (block, i) = (&mut blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
-            let hold = block.hold(i, [0, 1].map(|at| block.points[at].impulse[i]));
+            let loads = [0, 1].map(|at| block.points[at].impulse[i]);
+            joined.hold = block.hold(i, loads);
             let drag = impulse(block, i, 0);
-            give(block, i, movers, [sub(clamp(drag, sub(0, hold), hold), drag) as i32, 0, 0]);
+            let cut = sub(clamp(drag, sub(0, joined.hold), joined.hold), drag);
+            (most_cut, most) =
+                (cut.abs().max(most_cut), loads.into_iter().fold(most, |most, load| most.max(load.into())));
+            give(block, i, movers, [cut as i32, 0, 0]);
         }
+        (most_cut, most)
     }
 
     /// Sweeps the island as if it were soft.
@@ -315,12 +342,18 @@ fn impulse(block: &Block, i: usize, row: usize) -> i64 {
     row.impulse[i].into()
 }
 
-/// Changes the impulses of a contact.
-fn give(block: &mut Block, i: usize, movers: &mut [Mover], change: [i32; 3]) {
+/// Changes the impulses of a contact. Whether a body came to the bound of speeds: what is cut off there a later step does not
+/// give back, and impulses and velocities belong together no more.
+fn give(block: &mut Block, i: usize, movers: &mut [Mover], change: [i32; 3]) -> bool {
     if change == [0; 3] {
-        return;
+        return false;
     }
     block.give(i, movers, change);
+    let bound = |&v: &i64| v.unsigned_abs() >= lane::HELD.unsigned_abs();
+    let over = [0, 1].iter().any(|&body: &usize| {
+        let mover = &movers[block.bodies[body][i] as usize];
+        [mover.v[0], mover.v[1], mover.w].iter().any(bound)
+    });
     let [slide, first, second] = change;
     block.friction.impulse[i] = block.friction.impulse[i].saturating_add(slide);
     for (at, change) in [first, second].into_iter().enumerate() {
@@ -328,4 +361,5 @@ fn give(block: &mut Block, i: usize, movers: &mut [Mover], change: [i32; 3]) {
         block.points[at].impulse[i] = impulse;
         block.peak[at][i] = block.peak[at][i].max(impulse);
     }
+    over
 }

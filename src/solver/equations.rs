@@ -70,6 +70,8 @@ pub(super) struct Island {
     factored: bool,
     /// Whether it has had its share of the tick, or has numbers beyond what formats hold.
     pub(super) tired: bool,
+    /// Whether a body came to the bound of speeds in this pass.
+    pub(super) over: bool,
     /// How its contacts were solved.
     pub(super) mode: u8,
     /// Whether a row pushed an overlap apart, and how fast one does at most: so that the highest body is not faster than one

@@ -30,6 +30,7 @@ mod turning;
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Contact, Contacts, NEW, Pair, Touch};
 use crate::motion::{Drive, Fault};
+use crate::num::mul;
 use color::Colors;
 use direct::{Direct, GIVEN_UP, Rows};
 use fast::{strikes, swings};
@@ -295,6 +296,12 @@ impl Solver {
             touch.pairs[pair as usize].met = true;
         }
         touch.join(&mut timeline.late, colliders, contacts);
+    }
+
+    /// The slots of bodies that contacts moved in this tick by more than a speed (Q48 m/s) would: where overlaps are pushed
+    /// apart, that is not in their velocities.
+    pub(crate) fn shifted(&self, speed: i64) -> impl Iterator<Item = usize> {
+        self.movers.shifted(mul(speed, self.scales.margins.tick, 79), &self.scales)
     }
 
     /// The collisions of the tick.

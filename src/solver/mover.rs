@@ -111,6 +111,14 @@ impl Movers {
         place
     }
 
+    /// Whether rows can follow a body that was at `begin` when the tick began: not one that is too fast for them, or comes from
+    /// farther away than half of what their positions hold.
+    pub(crate) fn may_join(begin: &State, now: &State, scales: &Scales) -> bool {
+        let fast = |v: &i64| v.unsigned_abs() >> scales.shift >= SPEED_MAX.unsigned_abs() << 48;
+        let far = |axis: usize| now.x[axis].abs_diff(begin.x[axis]) > 1 << 35u32.saturating_add(scales.shift);
+        !(now.v.iter().any(fast) || far(0) || far(1))
+    }
+
     /// Takes a body in that rows did not know so far, at the end of a substep; it is `now` where impacts have brought it from
     /// where the tick began, and `bodies` are where free motion ends.
     pub(crate) fn join(
@@ -129,7 +137,7 @@ impl Movers {
         let place = self.enter(slot, speed(begin), mobility, scales);
         let (mover, course) = (&mut self.lanes[place as usize], &mut self.courses[place as usize]);
         course.kick = kick(&course.start, speeds(bodies, slot as usize, mobility, scales), scales);
-        let speed = speed(now).map(lane::bounded);
+        let speed = lane::held(speed(now));
         [mover.v[0], mover.v[1], mover.w] = speed;
         course.begin = [0, 1, 2].map(|axis: usize| lane::bounded(speed[axis].saturating_sub(course.kick[axis])));
         // The inverse of `state`: ways over h.
@@ -209,6 +217,13 @@ impl Movers {
     /// The slot of the body at a place other than 0.
     pub(crate) fn slot(&self, place: u32) -> usize {
         self.courses[place as usize].slot as usize
+    }
+
+    /// The slots of those that went farther than `way`, Q32 m, along an axis in this tick.
+    pub(crate) fn shifted(&self, way: i64, scales: &Scales) -> impl Iterator<Item = usize> {
+        let bits = scales.shift.saturating_add(6);
+        let far = move |mover: &Mover| mover.d.iter().any(|&d| (i64::from(d) << bits).saturating_abs() > way);
+        self.lanes.iter().zip(&self.courses).skip(1).filter(move |&(mover, _)| far(mover)).map(|(_, c)| c.slot as usize)
     }
 
     /// Whether rows have changed its velocity.

@@ -60,6 +60,11 @@ impl World {
         }
         if let Some(sleeping) = config.sleeping {
             let limits = sleeping.limits(config.tick_rate, config.unit_shift);
+            for slot in solver.shifted(limits.0) {
+                if !bodies.rest.is_asleep(slot) {
+                    bodies.rest.note(slot, 0);
+                }
+            }
             Sleepers { bodies, colliders, contacts, resting, touch, drive, gravity: config.gravity }.lull_quiet(limits);
         }
         for Fault { slot, bound } in faults.drain(..) {

@@ -327,12 +327,16 @@ impl Timeline {
             if manifold.count == 0 {
                 continue;
             }
-            for (place, now) in pair.flights.into_iter().zip(&states) {
+            let begins = [a, b].map(|flight| past.state(flight.slot as usize));
+            let far = |body: usize| !Movers::may_join(&begins[body], &states[body], stage.scales);
+            if stranger(&a) && far(0) || stranger(&b) && far(1) {
+                continue;
+            }
+            for ((place, now), begin) in pair.flights.into_iter().zip(&states).zip(&begins) {
                 let flight = &mut flights.list[place as usize];
                 if stranger(flight) {
-                    let begin = past.state(flight.slot as usize);
                     let mobility = &stage.mobilities[flight.slot as usize];
-                    flight.place = movers.join(flight.slot, [&begin, now], stage.bodies, mobility, stage.scales);
+                    flight.place = movers.join(flight.slot, [begin, now], stage.bodies, mobility, stage.scales);
                 }
             }
             pair.held = true;
