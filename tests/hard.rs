@@ -186,7 +186,7 @@ fn drop_on_a_pile(seed: u64) -> [f64; 3] {
 }
 
 #[test]
-#[ignore = "not held: 0.22 … 0.42 m of overlap on landing, 2 … 20 cm later: cargo test --release --test hard -- --ignored four_hundred"]
+#[ignore = "not held: 15 and 26 cm of overlap on landing, 1 and 2 cm later, seed 1 before and after a change of details: cargo test --release --test hard -- --ignored four_hundred"]
 fn four_hundred_kilograms_dropped_on_a_pile_do_not_sink_in() {
     for seed in 1..=3 {
         let [worst, late, up] = drop_on_a_pile(seed);
@@ -218,7 +218,7 @@ fn a_pyramid_40_wide_stands_a_minute() {
 }
 
 #[test]
-#[ignore = "takes a minute: cargo test --release --test hard -- --ignored pyramid"]
+#[ignore = "not held: rows of 100 go 10 cm sideways before they rest, 5 cm allowed; takes a minute: cargo test --release --test hard -- --ignored pyramid"]
 fn a_pyramid_100_wide_stands_a_minute() {
     stands("pyramid of 100", &mut scenes::pyramid(100), 60, 0.25, 0.05);
 }
@@ -388,13 +388,13 @@ fn boxes_that_a_kinematic_wall_presses_against_a_static_one_do_not_explode() {
 }
 
 #[test]
-#[ignore = "not held: discs slip out at 114 m/s, at 77 by sweeps: cargo test --release --test hard -- --ignored discs_and"]
+#[ignore = "not held: discs slip out at 79 m/s: cargo test --release --test hard -- --ignored discs_and"]
 fn discs_and_triangles_that_a_kinematic_wall_presses_do_not_explode() {
     press_and_release(&[disc(0.5), polygon(&[(-0.5, -0.4), (0.5, -0.4), (0.0, 0.5)])]);
 }
 
 #[test]
-#[ignore = "not held: some stay in one place, 5 cm/s after 20 s: cargo test --release --test hard -- --ignored discs_in"]
+#[ignore = "not held: some stay in one place, 4 cm/s after 20 s: cargo test --release --test hard -- --ignored discs_in"]
 fn discs_in_a_room_that_is_too_small_stay_in_it_and_come_to_rest() {
     let mut scene = scenes::confined();
     for _ in 0..1200 {
@@ -614,13 +614,13 @@ fn tumble(name: &str, (world, ids): &mut Scene, radius: f64) {
 }
 
 #[test]
-#[ignore = "takes 20 s: cargo test --release --test hard -- --ignored a_tumbler"]
+#[ignore = "not held: 7.8 cm of overlap at most, 5 cm allowed; takes 20 s: cargo test --release --test hard -- --ignored a_tumbler"]
 fn a_tumbler_turns_for_ten_thousand_ticks() {
     tumble("tumbler", &mut scenes::tumbler(), 14.9);
 }
 
 #[test]
-#[ignore = "takes 20 s: cargo test --release --test hard -- --ignored a_washer"]
+#[ignore = "not held: 16 cm of overlap at most, 5 cm allowed; takes 20 s: cargo test --release --test hard -- --ignored a_washer"]
 fn a_washer_turns_for_ten_thousand_ticks() {
     tumble("washer", &mut scenes::washer(), 16.0);
 }
@@ -628,7 +628,7 @@ fn a_washer_turns_for_ten_thousand_ticks() {
 // Piles.
 
 #[test]
-#[ignore = "takes a minute: cargo test --release --test hard -- --ignored settled_piles"]
+#[ignore = "not held: 2 of 8 seeds overlap by 1.1 and 1.2 cm; takes a minute: cargo test --release --test hard -- --ignored settled_piles"]
 fn settled_piles_of_1000_overlap_less_than_1_cm() {
     let mut over = Vec::new();
     for seed in 1..=8 {
