@@ -749,8 +749,7 @@ fn an_isolated_cluster_keeps_its_momentum() {
 
 #[test]
 fn a_settling_pile_gains_no_energy() {
-    // The budget: 3e-4 of the energy that settling takes. Impacts are answered at the end of their tick, so a bounce may
-    // give back some of what gravity did in that tick.
+    // The budget: 3e-4 of the energy that settling takes, for overlaps that are pushed apart.
     for seed in 8..13 {
         let mut world = world_of(-9.81, pile(seed, 48));
         let start = energy(&world);

@@ -227,7 +227,7 @@ impl Island {
             let (block, i) = (&blocks[joined.seat as usize / LANES], joined.seat as usize % LANES);
             let mut active = 0;
             // An impact may have taken the contact.
-            let present = if block.bodies[0][i] == block.bodies[1][i] { 0 } else { joined.present };
+            let present = if block.is_retired(i) { 0 } else { joined.present };
             joined.lacked = joined.lack;
             joined.start = [0, 1, 2].map(|row| impulse(block, i, row));
             for row in (0..3).filter(|row| present >> row & 1 != 0) {
