@@ -18,7 +18,7 @@
 //! | `snapshot` | save, load, hash, diff |
 //! | [`replay`] | recording, playing, verifying |
 //! | [`guide`] | chapters: what is promised, and why |
-// Allowed in solver/avx2.rs alone.
+// Allowed in solver/avx2.rs and solver/avx512.rs alone.
 #![deny(unsafe_code, clippy::undocumented_unsafe_blocks)]
 #![deny(missing_docs, clippy::arithmetic_side_effects)]
 

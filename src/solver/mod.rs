@@ -6,6 +6,8 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(all(target_arch = "x86_64", avx512))]
+mod avx512;
 mod color;
 mod direct;
 mod equations;
@@ -26,6 +28,8 @@ mod sweep;
 mod tests;
 mod timeline;
 mod turning;
+#[cfg(target_arch = "x86_64")]
+mod words;
 
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Contact, Contacts, NEW, Pair, Touch};
