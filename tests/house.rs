@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 /// The modules of the library, lowest floor first. A module sees its own floor and those below.
-const FLOORS: [&[&str]; 11] = [
+const FLOORS: [&[&str]; 12] = [
     &["num", "geom"],
     &["store"],
     &["shape"],
@@ -17,6 +17,7 @@ const FLOORS: [&[&str]; 11] = [
     &["solver"],
     &["world"],
     &["snapshot"],
+    &["rollback"],
     &["replay"],
     &["scene", "guide"],
 ];

@@ -142,6 +142,12 @@ impl Touch {
         self.seen.resize(slots, 0);
     }
 
+    /// Adds to `found` the bodies of those colliders for which the broad phase has a fixed box, and which are `elsewhere`.
+    pub(crate) fn find_displaced(&self, elsewhere: impl Fn(usize) -> bool, found: &mut Vec<u32>) {
+        let bodies = self.broad.fixed().map(|slot| self.proxies[slot].body);
+        found.extend(bodies.filter(|&body| elsewhere(body as usize)));
+    }
+
     pub(crate) fn remove(&mut self, slot: usize) {
         self.broad.remove(slot as u32);
     }
@@ -359,7 +365,7 @@ impl Touch {
         let end = |contact: Contact, events: &mut Vec<Event>| {
             if contact.touching {
                 let kind = if contact.sensor { EventKind::SensorEnd } else { EventKind::ContactEnd };
-                events.push(Event { kind, a: contact.a, b: contact.b });
+                events.push(Event { tick: 0, kind, a: contact.a, b: contact.b });
             }
         };
         for pair in &self.pairs {
@@ -377,8 +383,8 @@ impl Touch {
                 Contact { a, b, ..outcome(pair) }
             };
             match (before.touching, contact.touching) {
-                (false, true) if contact.sensor => events.push(Event { kind: EventKind::SensorBegin, a, b }),
-                (false, true) => events.push(Event { kind: EventKind::ContactBegin, a, b }),
+                (false, true) if contact.sensor => events.push(Event { tick: 0, kind: EventKind::SensorBegin, a, b }),
+                (false, true) => events.push(Event { tick: 0, kind: EventKind::ContactBegin, a, b }),
                 (true, false) => end(before, events),
                 _ => {}
             }

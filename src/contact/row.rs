@@ -130,6 +130,11 @@ impl Contacts {
         self.rows.push(contact.pack());
     }
 
+    /// How many bytes of memory the rows use.
+    pub(crate) fn memory(&self) -> usize {
+        size_of_val(self.rows.as_slice())
+    }
+
     /// XXH3-64 of the rows' little-endian bytes.
     pub(crate) fn hash(&self) -> u64 {
         hash_words(&self.rows)

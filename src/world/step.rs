@@ -2,6 +2,7 @@
 
 use super::sleep::Sleepers;
 use crate::World;
+use crate::contact::name;
 use crate::motion::{Fault, integrate};
 
 impl World {
@@ -72,6 +73,7 @@ impl World {
                 status.note(*tick, body, bound);
             }
         }
+        name(*tick, events, solver.collisions_mut(), &mut resting.found);
         *tick = tick.saturating_add(1);
     }
 }
