@@ -1,0 +1,50 @@
+"""Plays recorded replays by a second implementation of the arithmetic law, in plain integers, and compares the hash of
+the complete state after every tick: `python3 tests/law/run.py [replay…]`. Without arguments, the goldens below.
+"""
+
+import sys
+import time
+from pathlib import Path
+
+sys.dont_write_bytecode = True
+
+from replay import Bad, hash_parts, play, state_hash  # noqa: E402
+from world import Unsupported, World  # noqa: E402
+
+REPLAYS = Path(__file__).resolve().parent.parent.parent / "replays"
+GOLDENS = ("free_flight", "spin", "orbit")
+
+
+def run(path):
+    """How many ticks were the same, and what was not."""
+    records = play(path.read_bytes())
+    world = World(next(records))
+    ticks = 0
+    for recorded, commands, steps in records:
+        for command in commands:
+            world.command(command)
+        if steps:
+            world.step()
+        computed = state_hash(world.state)
+        if computed != recorded:
+            parts = ", ".join(f"{name} {value:016x}" for name, value in hash_parts(world.state).items())
+            return ticks, f"tick {world.state.tick}: hash {computed:016x}, recorded {recorded:016x}; parts: {parts}"
+        ticks += steps
+    return ticks, None
+
+
+def main(arguments):
+    failed = False
+    for path in [Path(a) for a in arguments] or [REPLAYS / f"{name}.replay" for name in GOLDENS]:
+        start = time.monotonic()
+        try:
+            ticks, wrong = run(path)
+        except (Bad, Unsupported, OSError) as error:
+            ticks, wrong = 0, f"{type(error).__name__}: {error}"
+        failed |= wrong is not None
+        print(f"{path.stem}: {ticks} ticks the same, {time.monotonic() - start:.1f} s{f'; {wrong}' if wrong else ''}", flush=True)
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
