@@ -3,16 +3,14 @@
 from types import SimpleNamespace as Row
 
 import motion
+import solver
 from ints import cross_wide, mul_div, rotate, sin_cos
+from pairs import Unsupported
 from shapes import canonical, outline, reach_of, resolved
 
 LIVE, CHAIN_END = 0xFFFFFFFF, 0xFFFFFFFE
 STATIC, KINEMATIC, DYNAMIC = range(3)
 COLUMNS = ("x", "y", "vx", "vy", "angle", "omega")
-
-
-class Unsupported(Exception):
-    """What this second implementation leaves out."""
 
 
 def nothing(**given):
@@ -267,8 +265,9 @@ class World:
         if self.drive is None:
             self.drive = motion.Drive(state)
         if state.colliders.live:
-            raise Unsupported("contacts")
-        motion.integrate(state, self.drive, faults)
+            solver.step(self, faults)
+        else:
+            motion.integrate(state, self.drive, faults)
         if state.pushes:
             state.pushes.clear()
             self.drive = None
