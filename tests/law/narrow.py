@@ -257,3 +257,37 @@ def near(a, b, d, limit):
 
 def collide(a, b, d, limit):
     return near(a, b, d, limit) or manifold([0, 0], [])
+
+
+def overlap(a, b, d):
+    """Whether two outlines have a point in common: less than 2^-38 m apart is touching."""
+    for axis in (0, 1):
+        if b.min[axis] + d[axis] > a.max[axis] or a.min[axis] - d[axis] > b.max[axis]:
+            return False
+    if a.count > 1 and b.count > 1:
+        return not separated(a, b, d) and not separated(b, a, neg(d))
+    if a.count > 1:
+        return within(a, add(b.vertices[0], d), b.radius)
+    if b.count > 1:
+        return within(b, sub(a.vertices[0], d), a.radius)
+    centers = sub(add(b.vertices[0], d), a.vertices[0])
+    return inner(centers, centers) <= (a.radius + b.radius) ** 2
+
+
+def separated(own, other, shift):
+    """Whether the other is wholly outside one of the edges."""
+    return any(
+        all(along(n, add(q, sub(shift, v))) > 0 for q in other.vertices) for n, v in zip(own.normals, own.vertices)
+    )
+
+
+def within(polygon, p, radius):
+    """Whether a point is at most so far from a polygon."""
+    outside = [along(n, sub(p, v)) for n, v in zip(polygon.normals, polygon.vertices)]
+    if max(outside) <= 0:
+        return True
+    what, at = region(polygon, p, outside.index(max(outside)))
+    if what == "edge":
+        return outside[at] <= radius << 6
+    way = sub(p, polygon.vertices[at])
+    return inner(way, way) <= radius * radius

@@ -138,10 +138,10 @@ def find(world, past, scales):
 
 def meet(world, colliders, bodies, placed, past, scales):
     """The manifold of two colliders; one without points for two that are not near but may meet in this tick."""
-    if any(world.state.colliders.slots[slot].value.sensor for slot in colliders):
-        raise Unsupported("a sensor")
     a, b = (past[body] for body in bodies)
     d = narrow.sub(b.x, a.x)
+    if any(world.state.colliders.slots[slot].value.sensor for slot in colliders):
+        return narrow.manifold([0, 0], []) if narrow.overlap(*placed, d) else None
     v = narrow.sub(a.v, b.v)
     reach = [world.outline(slot).reach for slot in colliders]
     fastest = abs(v[0]) + abs(v[1]) + rim_speed(a.omega, reach[0]) + rim_speed(b.omega, reach[1])
@@ -237,7 +237,7 @@ def outcome(pair):
     """What became of a contact, for the next tick."""
     points = pair.manifold.points
     found = Row(
-        touching=pair.met, sensor=0, count=len(points), id0=0, id1=0, mode=0, zero0=0, zero1=0, normal0=0, normal1=0,
+        touching=pair.met or pair.sensor, sensor=pair.sensor, count=len(points), id0=0, id1=0, mode=0, zero0=0, zero1=0, normal0=0, normal1=0,
         tangent=0,
     )
     rows = pair.contact

@@ -17,19 +17,22 @@ GOLDENS = ("free_flight", "spin", "orbit", "tc10c", "tc11c", "pusher")
 
 def run(path):
     """How many ticks were the same, and what was not."""
-    records = play(path.read_bytes())
-    world = World(next(records))
     ticks = 0
-    for recorded, commands, steps in records:
-        for command in commands:
-            world.command(command)
-        if steps:
-            world.step()
-        computed = state_hash(world.state)
-        if computed != recorded:
-            parts = ", ".join(f"{name} {value:016x}" for name, value in hash_parts(world.state).items())
-            return ticks, f"tick {world.state.tick}: hash {computed:016x}, recorded {recorded:016x}; parts: {parts}"
-        ticks += steps
+    try:
+        records = play(path.read_bytes())
+        world = World(next(records))
+        for recorded, commands, steps in records:
+            for command in commands:
+                world.command(command)
+            if steps:
+                world.step()
+            computed = state_hash(world.state)
+            if computed != recorded:
+                parts = "".join(f"\n  {name} {value:016x}" for name, value in hash_parts(world.state).items())
+                return ticks, f"tick {world.state.tick} has {computed:016x}, recorded {recorded:016x}; by parts:{parts}"
+            ticks += steps
+    except (Bad, Unsupported, OSError) as error:
+        return ticks, f"{type(error).__name__}: {error}"
     return ticks, None
 
 
@@ -37,10 +40,7 @@ def main(arguments):
     failed = False
     for path in [Path(a) for a in arguments] or [REPLAYS / f"{name}.replay" for name in GOLDENS]:
         start = time.monotonic()
-        try:
-            ticks, wrong = run(path)
-        except (Bad, Unsupported, OSError) as error:
-            ticks, wrong = 0, f"{type(error).__name__}: {error}"
+        ticks, wrong = run(path)
         failed |= wrong is not None
         print(f"{path.stem}: {ticks} ticks the same, {time.monotonic() - start:.1f} s{f'; {wrong}' if wrong else ''}", flush=True)
     return int(failed)

@@ -44,7 +44,7 @@ def prepare(world, pairs, movers):
     """Which pairs may strike, and which have rows."""
     past, scales = movers.past, movers.scales
     fast = []
-    for pair in pairs:
+    for pair in (pair for pair in pairs if not pair.sensor):
         points = pair.manifold.points
         if not points or strikes(world, pair, past, scales, False) or swings(world, pair, past, scales):
             fast.append(pair)
