@@ -12,7 +12,7 @@ from replay import Bad, hash_parts, play, state_hash  # noqa: E402
 from world import Unsupported, World  # noqa: E402
 
 REPLAYS = Path(__file__).resolve().parent.parent.parent / "replays"
-GOLDENS = ("free_flight", "spin", "orbit", "tc10c", "tc11c", "pusher")
+GOLDENS = ("free_flight", "spin", "orbit", "tc10c", "tc11c", "everything", "sensors", "pusher", "pixels")
 
 
 def run(path):
