@@ -64,7 +64,7 @@ class Pair:
         self.sensor = bool(a.sensor or b.sensor)
         self.restitution = max(a.restitution, b.restitution)
         self.friction = a.friction if a.friction == b.friction else sqrt(a.friction * b.friction)
-        self.contact, self.mode = None, 0
+        self.contact, self.mode, self.island = None, 0, None
         self.depth, self.met = 0, False
 
     def overlap(self):
@@ -248,7 +248,10 @@ def outcome(pair):
         found.touching |= rows.peak[at] > 0 or point.separation <= 0
     found.normal0, found.normal1 = (row.carried() for row in rows.points)
     found.tangent = rows.friction.carried()
-    found.mode = GIVEN_UP if pair.mode == GIVEN_UP and points else 0
+    if points and pair.island:
+        found.mode = 1 if rows.is_out() else pair.island.outcome()
+    elif points:
+        found.mode = GIVEN_UP if pair.mode == GIVEN_UP else 0
     return found
 
 

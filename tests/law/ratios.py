@@ -25,7 +25,7 @@ class Scales:
         self.line, self.turn = div(1 << 63, rate), div(TURN_PER_RADIAN_Q64, 2 * rate)
         self.coarse = div(1 << 30, rate)
         self.close_rate, self.push_rate = rate << 14, round_shift(SOFT_BIAS * rate, 16)
-        self.push = -(1 << 20)
+        self.rigid_rate, self.push = config.tick_rate << 12, -(1 << 20)
         self.firm = div((FIRM * self.push_rate * SOFT_MASS >> 20) * 3, SOFT_IMPULSE * 4)
         self.base, self.tick = MARGIN << k, div(1 << 63, config.tick_rate)
         self.tick_turn = div(TURN_PER_RADIAN_Q64, 2 * config.tick_rate)

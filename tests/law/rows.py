@@ -162,24 +162,31 @@ class Contact:
                 break
             blow, _ = self.once(biased, False, movers, scales)
 
-    def once(self, biased, slides, movers, scales):
-        """Friction, then the points; whether an impulse changed much, and whether a row pushed."""
-        if self.is_out():
-            return False, False
+    def look(self, movers):
+        """What the rows read: the slip and the speeds of the points, Q48, and how far these are from touching."""
         a, b = (movers[place] for place in self.places)
         nx, ny = self.normal
         vx, vy = (fits(round_shift(a.v[axis] - b.v[axis], 28), 32) for axis in (0, 1))
         wa, wb = round_shift(a.v[2], 28), round_shift(b.v[2], 28)
         along, across = nx * vx + ny * vy, nx * vy - ny * vx
-        turning = lambda row: row.arm[0] * wa - row.arm[1] * wb
-        speed = [along + turning(row) for row in self.points]
-        load = [row.impulse for row in self.points]
+        slip, *speed = (row.arm[0] * wa - row.arm[1] * wb for row in (self.friction, *self.points))
         separation = [limit(self.separation[at] + self.moved(at, a, b)) for at in (0, 1)]
+        return across + slip, [along + speed[0], along + speed[1]], separation
+
+    def hold(self, load):
+        """What friction holds at most under these loads."""
+        return min(round_shift(self.limit[0] * load[0] + self.limit[1] * load[1], 28), IMPULSE_MAX)
+
+    def once(self, biased, slides, movers, scales):
+        """Friction, then the points; whether an impulse changed much, and whether a row pushed."""
+        if self.is_out():
+            return False, False
+        slip, speed, separation = self.look(movers)
+        load = [row.impulse for row in self.points]
         slide = 0
         if slides:
-            slip = round_shift(across + turning(self.friction), 28)
-            hold = min(round_shift(self.limit[0] * load[0] + self.limit[1] * load[1], 28), IMPULSE_MAX)
-            impulse = clamp(self.friction.impulse - slip, -hold, hold)
+            hold = self.hold(load)
+            impulse = clamp(self.friction.impulse - round_shift(slip, 28), -hold, hold)
             slide = impulse - self.friction.impulse
             self.friction.impulse = impulse
             speed = [speed[at] + 2 * self.couple[at] * slide for at in (0, 1)]

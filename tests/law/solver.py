@@ -1,10 +1,11 @@
 """A tick of a world with colliders: pairs, rows, free motion, substeps, impacts."""
 
+import direct
 import narrow
 from ints import clamp, cross, dot, mul, rotate, sin_cos
 from motion import integrate
 from movers import Movers, state_of
-from pairs import GIVEN_UP, ROUNDING, Pair, Unsupported, find, finish, old, strikes, swings, turns, vote
+from pairs import ROUNDING, Pair, find, finish, old, strikes, swings, turns, vote
 from ratios import TICK, Mobility, Scales
 from rows import Contact
 from shapes import placed
@@ -14,7 +15,6 @@ RELAX = 5
 LANES = 8
 GROUND, COLORS = 20, 32
 HEAVY = 1 << 48
-ISLAND = 80
 
 
 def step(world, faults):
@@ -22,13 +22,13 @@ def step(world, faults):
     world.mobilities = [Mobility(row.value) for row in world.state.bodies.slots]
     movers = Movers(world, scales)
     pairs = find(world, movers.past, scales)
-    fast, held = prepare(world, pairs, movers)
+    fast, held, islands = prepare(world, pairs, movers)
     integrate(world.state, world.drive, faults)
     timeline = Timeline(world, pairs, movers, faults)
     for pair in fast:
         timeline.engage(pair)
     if held:
-        substeps(world, held, movers, timeline)
+        substeps(world, held, islands, movers, timeline)
         movers.store(faults)
     else:
         timeline.run(0, TICK)
@@ -70,11 +70,15 @@ def prepare(world, pairs, movers):
         pair.heavy, pair.mode = last.normal[0] + last.normal[1] >= HEAVY, last.mode
         pair.turning = movers.turns and turns(world, pair, past, scales)
     movers.look_brisk()
-    refuse_hard([vote(world, pair, past, scales) for pair in held], held, movers)
+    hard = direct.find([vote(world, pair, past, scales) for pair in held], held, movers)
     for pair in held:
         between = narrow.sub(past[pair.bodies[1]].x, past[pair.bodies[0]].x)
         write_anew(world, pair, between, pair.known or old(), scales)
-    return stay, held
+    islands = [direct.Island(members, depth, movers, scales) for members, depth in hard]
+    for island, (members, _) in zip(islands, hard):
+        for pair in members:
+            pair.island = island
+    return stay, held, islands
 
 
 def write_anew(world, pair, between, last, scales):
@@ -82,30 +86,6 @@ def write_anew(world, pair, between, last, scales):
     heavy = getattr(pair, "heavy", False)
     pair.contact = Contact(pair.manifold, pair.places, [between] * 2, mobility, last, pair.friction, scales, heavy)
     pair.contact.retired = False
-
-
-def refuse_hard(votes, held, movers):
-    """Hard islands, which are solved directly, are not part of this."""
-    leader = list(range(len(movers.list)))
-
-    def of(place):
-        while leader[place] != place:
-            place = leader[place]
-        return place
-
-    for pair in held:
-        a, b = pair.places
-        if not movers.is_free(a) and not movers.is_free(b):
-            leader[max(of(a), of(b))] = min(of(a), of(b))
-    islands = {}
-    for pair, said in zip(held, votes):
-        a, b = pair.places
-        moving = b if movers.is_free(a) else a
-        if not movers.is_free(moving):
-            islands.setdefault(of(moving), []).append(said)
-    for said in islands.values():
-        if "hard" in said and "sweep" not in said and len(said) <= ISLAND:
-            raise Unsupported("a hard island")
 
 
 def ordered(held, movers):
@@ -139,11 +119,13 @@ def seat(late, contact, movers):
     late.append([contact])
 
 
-def substeps(world, held, movers, timeline):
+def substeps(world, held, islands, movers, timeline):
     scales = movers.scales
     movers.take_kicks()
-    first, late, turning = ordered(held, movers), [], [pair for pair in held if pair.turning]
-    for contact in first:
+    swept = [pair for pair in held if pair.island is None]
+    apart = sorted((pair for pair in held if pair.island), key=lambda pair: not pair.heavy)
+    first, late, turning = ordered(swept, movers), [], [pair for pair in swept if pair.turning]
+    for contact in first + [pair.contact for pair in apart]:
         contact.give(movers.list, contact.impulses())
     for substep in range(1, scales.substeps + 1):
         movers.begin(substep == 1)
@@ -152,6 +134,8 @@ def substeps(world, held, movers, timeline):
                 renew(world, pair, movers)
         for contact in first + [each for block in late for each in block]:
             contact.solve(True, movers.list, scales)
+        for island in islands:
+            island.run(True)
         movers.drift()
         timeline.run(*scales.span(substep))
         for pair in held:
@@ -171,9 +155,11 @@ def substeps(world, held, movers, timeline):
         for contact in first + [each for block in late for each in block]:
             if everything or contact.pushes or contact.heavy:
                 contact.solve(False, movers.list, scales)
+        for island in islands:
+            island.run(False)
     for pair in held:
         if pair.contact.spent():
-            for place in pair.contact.places:
+            for place in pair.places:
                 movers.list[place].hit = True
 
 
