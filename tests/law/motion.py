@@ -75,7 +75,8 @@ def acceleration(body, gravity, push):
 class Drive:
     """What forces and damping do to each body in a step of the scheme. Derived from the state."""
 
-    def __init__(self, state):
+    def __init__(self, world):
+        state = world.state
         config, slots = state.config, state.bodies.slots
         self.sources = [(None, a.value.position, a.value.mu) for a in state.attractors.slots if a.value.mu]
         self.sources += [(slot, None, b.value.mu) for slot, b in enumerate(slots) if b.value.mu]
@@ -84,8 +85,13 @@ class Drive:
         self.tick = div(1 << 63, config.tick_rate)
         self.kicks, self.bows, self.damped, self.limited = [], [], {}, []
         pushes = {push.slot: push for push in state.pushes}
+        # What sleeps is left out.
+        self.awake = [slot for slot in range(len(slots)) if not world.is_asleep(slot)]
         for slot, body in enumerate(slots):
-            self.prepare(slot, body.value, config.gravity, pushes.get(slot))
+            self.kicks.append([0, 0, 0])
+            self.bows.append([0, 0, 0])
+            if not world.is_asleep(slot):
+                self.prepare(slot, body.value, config.gravity, pushes.get(slot))
 
     def prepare(self, slot, body, gravity, push):
         span = Span(self.span)
@@ -100,11 +106,10 @@ class Drive:
             kick = [mul(span.line, factors[1], 62) for factors in (line, turn)]
             bow = [mul(square[at], factors[2], 62) for at, factors in enumerate((line, turn))]
             # A way has 48 + 63 fraction bits, a bow 56.
-            self.kicks.append([mul(a[0], kick[0], 63), mul(a[1], kick[0], 63), mul(a[2], kick[1], 63)])
-            self.bows.append([mul(a[0], bow[0], 55), mul(a[1], bow[0], 55), mul(a[2], bow[1], 55)])
+            self.kicks[slot] = [mul(a[0], kick[0], 63), mul(a[1], kick[0], 63), mul(a[2], kick[1], 63)]
+            self.bows[slot] = [mul(a[0], bow[0], 55), mul(a[1], bow[0], 55), mul(a[2], bow[1], 55)]
         else:
-            self.kicks.append(a)
-            self.bows.append([0, 0, 0])
+            self.kicks[slot] = a
         if any(rates):
             spans = Span(line=mul(span.line, line[1], 62), turn=mul(span.turn, turn[1], 62))
             self.damped[slot] = (line[0], turn[0], spans)
@@ -154,18 +159,35 @@ def damp(state, drive):
 
 def kick(state, drive, faults, span):
     for axis, (column, bound) in enumerate(((state.vx, VELOCITY), (state.vy, VELOCITY), (state.omega, SPIN))):
-        for slot, kicks in enumerate(drive.kicks):
+        for slot in drive.awake:
+            kicks = drive.kicks[slot]
             faster(column, slot, kicks[axis] if span is None else mul(kicks[axis], span.line, 63), bound, faults)
+
+
+def runs(slots):
+    """Slots in order, as runs without a gap."""
+    found = []
+    for slot in slots:
+        if found and found[-1][-1] == slot - 1:
+            found[-1].append(slot)
+        else:
+            found.append([slot])
+    return found
 
 
 def glide(state, drive, faults):
     """Who is damped has spans of its own; those between are done together, which orders what is told of bounds."""
-    start, span = 0, Span(drive.span)
-    for slot, (_, _, own) in drive.damped.items():
-        drift(state, drive, range(start, slot), span, faults)
-        drift(state, drive, [slot], own, faults)
-        start = slot + 1
-    drift(state, drive, range(start, len(state.x)), span, faults)
+    span = Span(drive.span)
+    for run in runs(drive.awake):
+        part = []
+        for slot in run:
+            if slot in drive.damped:
+                drift(state, drive, part, span, faults)
+                drift(state, drive, [slot], drive.damped[slot][2], faults)
+                part = []
+            else:
+                part.append(slot)
+        drift(state, drive, part, span, faults)
     damp(state, drive)
     kick(state, drive, faults, None)
 
@@ -192,8 +214,8 @@ def attract(state, drive, span, faults):
     if not drive.sources:
         return
     places = [(slot, at or [state.x[slot], state.y[slot]], mu) for slot, at, mu in drive.sources]
-    for slot, body in enumerate(state.bodies.slots):
-        if body.value.kind != DYNAMIC:
+    for slot in drive.awake:
+        if state.bodies.slots[slot].value.kind != DYNAMIC:
             continue
         pulls = [
             attraction(mu, [at[0] - state.x[slot], at[1] - state.y[slot]])
@@ -207,14 +229,16 @@ def attract(state, drive, span, faults):
         faster(state.vy, slot, mul(pull[1], span.line, 63), VELOCITY, faults)
 
 
-def integrate(state, drive, faults):
+def integrate(world, faults):
+    state, drive = world.state, world.drive
     faults += [(slot, ACCELERATION) for slot in drive.limited]
     for _ in range(drive.steps):
         for what, span in drive.stages:
             if what == "glide":
                 glide(state, drive, faults)
             elif what == "drift":
-                drift(state, drive, range(len(state.x)), span, faults)
+                for run in runs(drive.awake):
+                    drift(state, drive, run, span, faults)
             elif what == "decay":
                 damp(state, drive)
             else:

@@ -149,6 +149,11 @@ class Movers:
     def turned_aside(self):
         return [m.slot for place, m in enumerate(self.list) if self.brisk and place and self.is_aside(place)]
 
+    def shifted(self, speed):
+        """The slots of those that went farther in this tick than a speed would bring them."""
+        way, bits = mul(speed, self.scales.tick, 79), self.scales.shift + 6
+        return [m.slot for m in self.list[1:] if any(abs(c << bits) > way for c in m.d[:2])]
+
     def keeps(self, place):
         """Whether the rows say where it ends."""
         return place != 0 and (self.list[place].hit or self.list[place].slowed)
@@ -184,7 +189,7 @@ class Movers:
         state, scales, k = self.world.state, self.scales, self.scales.shift
         for mover in self.list[1:]:
             slot, begin = mover.slot, self.past[mover.slot]
-            if not (mover.hit or mover.slowed) or not mover.mobility.moves():
+            if not (mover.hit or mover.slowed) or not mover.mobility.moves() or self.world.is_asleep(slot):
                 continue
             if mover.slowed:
                 faults.append((slot, CONTACT_SPEED))

@@ -3,6 +3,7 @@
 from types import SimpleNamespace as Row
 
 import narrow
+import sleep
 from ints import cross, dot, mul, sqrt
 from ratios import Mobility, weight
 from shapes import placed
@@ -14,10 +15,6 @@ GIVEN_UP = 255
 BESIDE = (4_294_967, 34_359_738)
 TURNING = 1 << 44
 LIVE = 0xFFFFFFFF
-
-
-class Unsupported(Exception):
-    """What this second implementation leaves out."""
 
 
 def old(contact=None):
@@ -95,6 +92,10 @@ def free_box(world, collider, past, scales):
     return swept(state.x, state.v, world.drive.gain(body), [-reach] * 2, [reach] * 2, scales)
 
 
+def still_box(state, of):
+    return [[state.x[axis] + side[axis] for axis in (0, 1)] for side in (of.min, of.max)]
+
+
 def boxes(world, past, scales):
     """By collider in use: its outline in the world's axes, and the box in which it is in this tick."""
     found = {}
@@ -104,8 +105,8 @@ def boxes(world, past, scales):
         body, outline = row.value.body, world.outline(slot)
         state, of = past[body], placed(outline, past[body].angle)
         low, high = of.min, of.max
-        if world.state.bodies.slots[body].value.kind == 0:
-            box = [[state.x[axis] + side[axis] for axis in (0, 1)] for side in (low, high)]
+        if world.is_still(body):
+            box = still_box(state, of)
         else:
             # The disc in which it may turn, but for what it cannot turn to in a tick.
             rim, out = way(rim_speed(state.omega, outline.reach), scales), outline.reach + scales.base
@@ -127,6 +128,9 @@ def find(world, past, scales):
             if a >= b or not overlaps(found[a][1], found[b][1]) or not wanted(world, a, b):
                 continue
             bodies = [slots[slot].value.body for slot in (a, b)]
+            # Of two that stay where they are, one may be a sensor: nothing is looked at.
+            if all(world.is_still(slot) for slot in bodies) or sleep.rests(world, (a, b), bodies):
+                continue
             manifold = meet(world, (a, b), bodies, (found[a][0], found[b][0]), past, scales)
             if manifold is None:
                 continue
@@ -255,13 +259,18 @@ def outcome(pair):
     return found
 
 
+def lasts(found):
+    """Whether a contact is kept."""
+    return found.touching or found.normal0 or found.normal1 or found.tangent
+
+
 def finish(world, pairs):
     """The contacts after the tick: those that touch or push."""
     contacts = []
     for pair in pairs:
         found = outcome(pair)
-        if found.touching or found.normal0 or found.normal1 or found.tangent:
-            ids = [Row(index=slot, generation=world.state.colliders.slots[slot].generation) for slot in pair.colliders]
-            found.a, found.b = ids
+        if lasts(found):
+            slots = world.state.colliders.slots
+            found.a, found.b = (Row(index=slot, generation=slots[slot].generation) for slot in pair.colliders)
             contacts.append(found)
     world.state.contacts = contacts

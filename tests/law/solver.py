@@ -5,7 +5,7 @@ import narrow
 from ints import clamp, cross, dot, mul, rotate, sin_cos
 from motion import integrate
 from movers import Movers, state_of
-from pairs import ROUNDING, Pair, find, finish, old, strikes, swings, turns, vote
+from pairs import ROUNDING, Pair, find, lasts, old, outcome, strikes, swings, turns, vote
 from ratios import TICK, Mobility, Scales
 from rows import Contact
 from shapes import placed
@@ -21,9 +21,9 @@ def step(world, faults):
     scales = Scales(world.state.config)
     world.mobilities = [Mobility(row.value) for row in world.state.bodies.slots]
     movers = Movers(world, scales)
-    pairs = find(world, movers.past, scales)
+    pairs = find(world, movers.past, scales) if world.state.colliders.live else []
     fast, held, islands = prepare(world, pairs, movers)
-    integrate(world.state, world.drive, faults)
+    integrate(world, faults)
     timeline = Timeline(world, pairs, movers, faults)
     for pair in fast:
         timeline.engage(pair)
@@ -37,7 +37,17 @@ def step(world, faults):
         pair = Pair(world, colliders, bodies, narrow.manifold([0, 0], []), None)
         pair.met = True
         pairs.append(pair)
-    finish(world, sorted(pairs, key=lambda pair: pair.colliders))
+    return sorted(pairs, key=lambda pair: pair.colliders), movers
+
+
+def touched(world, pairs):
+    """The sleeping bodies that the tick has touched."""
+    found = []
+    for pair in pairs:
+        asleep = [slot for slot in pair.bodies if world.is_asleep(slot)]
+        if asleep and not pair.sensor and lasts(outcome(pair)):
+            found += asleep
+    return found
 
 
 def prepare(world, pairs, movers):

@@ -8,7 +8,7 @@ from ints import clamp, mul, quotient, round_shift, sat64
 from meeting import fastest, first_touch
 from motion import FAR, POSITION, turn_by
 from movers import CONTACT_SPEED
-from pairs import free_box, half, may_strike, overlaps
+from pairs import free_box, half, may_strike, overlaps, still_box
 from ratios import TICK, weight
 from shapes import placed
 from strike import LIMIT, ONE, Strike, solve
@@ -441,9 +441,12 @@ class Timeline:
 
     def way(self, collider):
         """A box around the way of a collider: its body's own, or where impacts sent that."""
-        place = self.by_slot.get(self.world.state.colliders.slots[collider].value.body)
+        body = self.world.state.colliders.slots[collider].value.body
+        place = self.by_slot.get(body)
         if place is not None and self.flights[place].aside:
             return self.flights[place].around
+        if self.world.is_still(body):
+            return still_box(self.movers.past[body], placed(self.world.outline(collider), self.movers.past[body].angle))
         return free_box(self.world, collider, self.movers.past, self.scales)
 
     def is_slow(self, bodies, pair):
@@ -507,7 +510,8 @@ class Timeline:
         state = self.world.state
         for flight in self.flights:
             slot = flight.slot
-            if not flight.strikes or self.movers.keeps(flight.place) or state.bodies.slots[slot].value.kind != 2:
+            stays = self.world.is_asleep(slot) or state.bodies.slots[slot].value.kind != 2
+            if not flight.strikes or stays or self.movers.keeps(flight.place):
                 continue
             there = flight.at(TICK)
             held = [clamp(c, -FAR, FAR) for c in there.x]

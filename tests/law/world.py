@@ -1,16 +1,25 @@
 """The state: slots, commands, and one tick."""
 
+from itertools import count
 from types import SimpleNamespace as Row
 
 import motion
+import sleep
 import solver
 from ints import cross_wide, mul_div, rotate, sin_cos
-from pairs import Unsupported
-from shapes import canonical, outline, reach_of, resolved
+from movers import state_of
+from pairs import finish, overlaps, still_box
+from shapes import canonical, outline, placed, reach_of, resolved
 
 LIVE, CHAIN_END = 0xFFFFFFFF, 0xFFFFFFFE
 STATIC, KINEMATIC, DYNAMIC = range(3)
 COLUMNS = ("x", "y", "vx", "vy", "angle", "omega")
+# Commands that wake a body if they change it, and what of it wakes others as well.
+CHANGE = (
+    "set_kind", "set_position", "set_angle", "set_velocity", "set_angular_velocity", "set_force", "set_torque", "set_mass",
+    "set_fixed_rotation", "set_damping", "set_mu", "set_allow_sleep",
+)
+PLACE = ("x", "y", "angle", "kind", "mu")
 
 
 def nothing(**given):
@@ -72,14 +81,75 @@ def center_at(origin, center, angle):
 class World:
     def __init__(self, state):
         self.state, self.drive, self.outlines = state, None, {}
-        if state.config.sleeping is not None:
-            raise Unsupported("sleeping")
+
+    def is_asleep(self, slot):
+        return bool(self.state.quiet) and self.state.quiet[slot] == sleep.ASLEEP
+
+    def is_still(self, slot):
+        """Whether a body stays where it is in every tick."""
+        return self.state.bodies.slots[slot].value.kind == STATIC or self.is_asleep(slot)
 
     # Commands. A replay has accepted ones only: what is refused is not this module's.
 
     def command(self, c):
         self.drive = None
+        if self.state.config.sleeping is None:
+            return getattr(self, c.name)(c)
+        if c.name in ("set_surface", "set_filter"):
+            slot = self.state.colliders.slots[c.id.index].value.body
+        elif c.name in CHANGE + ("destroy_body", "apply_force", "apply_torque", "apply_impulse", "apply_angular_impulse", "wake"):
+            slot = c.id.index
+        if c.name in CHANGE:
+            before = self.portrait(slot)
+            getattr(self, c.name)(c)
+            after = self.portrait(slot)
+            if before != after:
+                sleep.disturb(self, slot)
+            if [before[name] for name in PLACE] != [after[name] for name in PLACE]:
+                self.disturb_around(slot, before["mu"])
+            return
+        if c.name == "destroy_body":
+            pulls = self.state.bodies.slots[slot].value.mu
+            sleep.disturb(self, slot)
+            self.destroy_body(c)
+            return sleep.wake_all(self) if pulls else None
+        gravity = self.state.config.gravity
         getattr(self, c.name)(c)
+        if c.name == "create_body":
+            self.disturb_around(self.created, 0)
+        elif c.name.endswith("attractor") or (c.name == "set_gravity" and c.gravity != gravity):
+            sleep.wake_all(self)
+        elif c.name.startswith("apply") or c.name in ("wake", "set_surface", "set_filter"):
+            sleep.disturb(self, slot)
+            if c.name == "set_filter":
+                self.disturb_around(slot, 0)
+
+    def portrait(self, slot):
+        """A body as commands see it."""
+        columns = {name: getattr(self.state, name)[slot] for name in COLUMNS}
+        return {**columns, **vars(self.state.bodies.slots[slot].value)}
+
+    def disturb_around(self, slot, mu):
+        """What sleeps where a body is wakes, if a step would not find out; and everybody if it pulls, or did."""
+        body = self.state.bodies.slots[slot].value
+        if body.mu or mu:
+            sleep.wake_all(self)
+        if body.kind != DYNAMIC:
+            rows = [(at, row.value.body) for at, row in enumerate(self.state.colliders.slots) if row.link == LIVE]
+            box = lambda at, of: still_box(state_of(self, of), placed(self.outline(at), self.state.angle[of]))
+            own = [box(at, of) for at, of in rows if of == slot]
+            found = [of for at, of in rows if self.is_asleep(of) and any(overlaps(box(at, of), each) for each in own)]
+            sleep.wake(self, found)
+
+    def put_to_sleep(self, c):
+        slot, state = c.id.index, self.state
+        if self.is_asleep(slot):
+            return
+        dynamic = lambda of: state.bodies.slots[of].value.kind == DYNAMIC
+        found = sleep.island(self, slot, state.resting + state.contacts, dynamic)
+        for other in found:
+            self.drop_push(other)
+        sleep.lull(self, found)
 
     def body(self, c):
         """A body that is about to be changed."""
@@ -98,6 +168,9 @@ class World:
             column = getattr(state, name)
             column += [0] * (slot + 1 - len(column))
             column[slot] = value
+        if state.config.sleeping is not None:
+            state.quiet += [0] * (slot + 1 - len(state.quiet))
+        self.created = slot
         following = None
         for each in reversed(of.colliders):
             following = insert(state.colliders, Row(
@@ -131,6 +204,8 @@ class World:
         remove(state.bodies, slot, nothing())
         for name in COLUMNS:
             getattr(state, name)[slot] = 0
+        if state.quiet:
+            state.quiet[slot] = 0
         self.drop_push(slot)
 
     def drop_push(self, slot):
@@ -262,15 +337,31 @@ class World:
 
     def step(self):
         state, faults = self.state, []
-        if self.drive is None:
-            self.drive = motion.Drive(state)
-        if state.colliders.live:
-            solver.step(self, faults)
-        else:
-            motion.integrate(state, self.drive, faults)
+        if state.config.sleeping is not None:
+            sleep.settle(self)
+        columns = {name: list(getattr(state, name)) for name in COLUMNS}
+        for attempt in count():
+            if self.drive is None:
+                self.drive = motion.Drive(self)
+            pairs, movers = solver.step(self, faults)
+            touched = solver.touched(self, pairs)
+            if not touched:
+                break
+            # A tick that touches what sleeps is computed anew, with that awake.
+            for name, column in columns.items():
+                getattr(state, name)[:] = column
+            sleep.wake(self, touched if attempt < sleep.AGAIN else range(len(state.quiet)))
+            sleep.settle(self)
+            faults.clear()
+        finish(self, pairs)
         if state.pushes:
             state.pushes.clear()
             self.drive = None
+        if state.config.sleeping is not None:
+            for slot in movers.shifted(sleep.limits(state.config)[0]):
+                if not self.is_asleep(slot):
+                    state.quiet[slot] = 0
+            sleep.lull_quiet(self)
         for slot, bound in faults:
             row = state.bodies.slots[slot]
             if row.link == LIVE and all(entry.bound != bound for entry in state.status):
