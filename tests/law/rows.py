@@ -54,8 +54,8 @@ class Line:
 class Contact:
     """A contact's rows. `places`: of its bodies among the movers; the same twice once it is taken out."""
 
-    def __init__(self, manifold, places, betweens, mobility, old, friction, scales, heavy=False):
-        self.heavy, self.pushes = heavy, False
+    def __init__(self, manifold, places, betweens, mobility, old, friction, scales):
+        self.heavy = self.pushes = self.retired = False
         self.write(manifold, places, betweens, mobility, old, friction, scales)
 
     def write(self, manifold, places, betweens, mobility, old, friction, scales):

@@ -83,7 +83,8 @@ def prepare(world, pairs, movers):
     hard = direct.find([vote(world, pair, past, scales) for pair in held], held, movers)
     for pair in held:
         between = narrow.sub(past[pair.bodies[1]].x, past[pair.bodies[0]].x)
-        write_anew(world, pair, between, pair.known or old(), scales)
+        pair.contact = Contact(pair.manifold, pair.places, [between] * 2, masses(world, pair), pair.known or old(), pair.friction, scales)
+        pair.contact.heavy = pair.heavy
     islands = [direct.Island(members, depth, movers, scales) for members, depth in hard]
     for island, (members, _) in zip(islands, hard):
         for pair in members:
@@ -91,11 +92,8 @@ def prepare(world, pairs, movers):
     return stay, held, islands
 
 
-def write_anew(world, pair, between, last, scales):
-    mobility = [world.mobilities[slot] for slot in pair.bodies]
-    heavy = getattr(pair, "heavy", False)
-    pair.contact = Contact(pair.manifold, pair.places, [between] * 2, mobility, last, pair.friction, scales, heavy)
-    pair.contact.retired = False
+def masses(world, pair):
+    return [world.mobilities[slot] for slot in pair.bodies]
 
 
 def ordered(held, movers):
@@ -134,13 +132,15 @@ def substeps(world, held, islands, movers, timeline):
     movers.take_kicks()
     swept = [pair for pair in held if pair.island is None]
     apart = sorted((pair for pair in held if pair.island), key=lambda pair: not pair.heavy)
-    first, late, turning = ordered(swept, movers), [], [pair for pair in swept if pair.turning]
+    first, late, turning = ordered(swept, movers), [], [pair for pair in held if pair.turning]
+    # All contacts of the tick, with their bodies, also those that are taken out.
+    rows = [(pair.contact, pair.places) for pair in held]
     for contact in first + [pair.contact for pair in apart]:
         contact.give(movers.list, contact.impulses())
     for substep in range(1, scales.substeps + 1):
         movers.begin(substep == 1)
         for pair in turning:
-            if not pair.contact.is_out():
+            if pair.island is None and not pair.contact.is_out():
                 renew(world, pair, movers)
         for contact in first + [each for block in late for each in block]:
             contact.solve(True, movers.list, scales)
@@ -148,18 +148,20 @@ def substeps(world, held, islands, movers, timeline):
             island.run(True)
         movers.drift()
         timeline.run(*scales.span(substep))
-        for pair in held:
-            if pair.contact.retired:
-                pair.contact.retire()
+        for contact, _ in rows:
+            if contact.retired:
+                contact.retire()
         for pair, manifold, between in timeline.settled:
             now = [state_of(world, slot) for slot in range(len(world.state.x))]
             if pair not in turning and turns(world, pair, now, scales):
                 turning.append(pair)
-            pair.manifold, pair.places = manifold, [movers.place_of(slot) for slot in pair.bodies]
-            write_anew(world, pair, between, old(), scales)
+            # One that was taken out may be in again.
+            pair.island, pair.mode, pair.manifold = None, 0, manifold
+            pair.places = [movers.place_of(slot) for slot in pair.bodies]
+            pair.contact = Contact(manifold, pair.places, [between] * 2, masses(world, pair), old(), pair.friction, scales)
             pair.contact.backdate(movers.list)
             seat(late, pair.contact, movers)
-            held.append(pair)
+            rows.append((pair.contact, pair.places))
         timeline.settled.clear()
         everything = substep % RELAX == 0 or substep == scales.substeps
         for contact in first + [each for block in late for each in block]:
@@ -167,9 +169,9 @@ def substeps(world, held, islands, movers, timeline):
                 contact.solve(False, movers.list, scales)
         for island in islands:
             island.run(False)
-    for pair in held:
-        if pair.contact.spent():
-            for place in pair.places:
+    for contact, places in rows:
+        if contact.spent():
+            for place in places:
                 movers.list[place].hit = True
 
 
@@ -194,8 +196,7 @@ def renew(world, pair, movers):
     pair.met |= contact.spent()
     pair.manifold = narrow.collide(*there, between, scales.base + mul(speed, scales.line, 79))
     betweens = half_on(pair.manifold, there, states, between, scales)
-    mobility = [world.mobilities[slot] for slot in pair.bodies]
-    places = pair.places
+    places, mobility = pair.places, masses(world, pair)
     contact.renew(
         movers.list, lambda c: c.write(pair.manifold, places, betweens, mobility, last, pair.friction, scales)
     )
