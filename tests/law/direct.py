@@ -255,7 +255,8 @@ class Island:
         while True:
             if not self.factor():
                 return False
-            lacks = [round_shift(-joined.lack[row] << 24, joined.shift[row]) for joined in self.contacts for row in joined.equations()]
+            every = [(joined, row) for joined in self.contacts for row in joined.equations()]
+            lacks = [round_shift(-joined.lack[row] << 24, joined.shift[row]) for joined, row in every]
             self.solution = self.factored.solve(lacks)
             if self.solution is None:
                 return False

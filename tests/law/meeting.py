@@ -6,7 +6,7 @@ Times are Q32 of a tick, ways Q32 m, rates Q40 a tick, heights Q38 m.
 from math import isqrt
 from types import SimpleNamespace as Row
 
-from ints import TURN_PER_RADIAN_Q64, clamp, mul, quotient
+from ints import TURN_PER_RADIAN_Q64, clamp, mul
 from narrow import add, along, inner, neg, region, sub, unit
 from shapes import placed
 

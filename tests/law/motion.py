@@ -2,7 +2,7 @@
 
 from math import isqrt
 
-from ints import I64, TURN, TURN_PER_RADIAN_Q64, clamp, div, mul, mul_add, mul_div, round_shift, sat64, sat128
+from ints import I64, TURN, TURN_PER_RADIAN_Q64, clamp, div, mul, mul_add, mul_div, round_shift, sat64, sat128, shifted
 
 DYNAMIC = 2
 POSITION, TURNS, VELOCITY, SPIN, ACCELERATION = range(5)
@@ -63,13 +63,11 @@ def acceleration(body, gravity, push):
     """m/s² and rad/s², Q48, not limited."""
     if body.kind != DYNAMIC:
         return [0, 0, 0]
-    along = [
-        sat128(mul_div(sat128(body.force[axis] + (push.force[axis] if push else 0)), 1 << 48, body.mass) + gravity[axis])
-        for axis in (0, 1)
-    ]
-    if body.fixed_rotation:
-        return [*along, 0]
-    return [*along, mul_div(sat128(body.torque + (push.torque if push else 0)), 1 << 48, body.inertia)]
+    force, torque = body.force, body.torque
+    if push:
+        force, torque = [sat128(force[axis] + push.force[axis]) for axis in (0, 1)], sat128(torque + push.torque)
+    along = [sat128(mul_div(force[axis], 1 << 48, body.mass) + gravity[axis]) for axis in (0, 1)]
+    return [*along, 0 if body.fixed_rotation else mul_div(torque, 1 << 48, body.inertia)]
 
 
 class Drive:
@@ -205,8 +203,7 @@ def attraction(mu, d):
     cube = (inverse * inverse >> 64) * inverse >> 64
     factor = cube * mantissa >> 64
     exponent = 3 * even // 2 - zeros - 69
-    most = 1 << 100
-    return [clamp(round_shift(c * factor, -exponent) if exponent <= 0 else c * factor << exponent, -most, most) for c in d]
+    return [clamp(shifted(c * factor, -exponent), -(1 << 100), 1 << 100) for c in d]
 
 
 def attract(state, drive, span, faults):

@@ -5,7 +5,7 @@ from types import SimpleNamespace as Row
 import narrow
 import sleep
 from ints import cross, dot, mul, sqrt
-from ratios import Mobility, weight
+from ratios import weight
 from shapes import placed
 
 DYNAMIC = 2
@@ -54,13 +54,19 @@ def overlaps(a, b):
     return all(a[0][axis] <= b[1][axis] and b[0][axis] <= a[1][axis] for axis in (0, 1))
 
 
+def surface(world, colliders):
+    """C_R and the coefficient of friction of two colliders."""
+    a, b = (world.state.colliders.slots[slot].value for slot in colliders)
+    friction = a.friction if a.friction == b.friction else sqrt(a.friction * b.friction)
+    return max(a.restitution, b.restitution), friction
+
+
 class Pair:
     def __init__(self, world, colliders, bodies, manifold, known):
         a, b = (world.state.colliders.slots[slot].value for slot in colliders)
         self.colliders, self.bodies, self.manifold, self.known = colliders, bodies, manifold, known
         self.sensor = bool(a.sensor or b.sensor)
-        self.restitution = max(a.restitution, b.restitution)
-        self.friction = a.friction if a.friction == b.friction else sqrt(a.friction * b.friction)
+        self.restitution, self.friction = surface(world, colliders)
         self.contact, self.mode, self.island = None, 0, None
         self.depth, self.met = 0, False
 
@@ -206,7 +212,7 @@ def swings(world, pair, past, scales):
 
 
 def turns(world, pair, past, scales):
-    """Whether it turns so fast that its rows would be beside its contact before the tick ends. `past`: of the bodies now."""
+    """Whether it turns so fast that its rows would be beside its contact before the tick ends."""
     a, b = (past[body] for body in pair.bodies)
     omega = [abs(a.omega), abs(b.omega)]
     if sum(omega) < TURNING:
@@ -233,7 +239,8 @@ def vote(world, pair, past, scales):
     if not hard or passing >= CALM:
         return None
     # What a kinematic body presses while it moves may have no solution.
-    driven = [past[body] for body in pair.bodies if not world.mobilities[body].moves() and not world.mobilities[body].fixed]
+    mobility = world.mobilities
+    driven = [past[body] for body in pair.bodies if not mobility[body].moves() and not mobility[body].fixed]
     return "sweep" if any([*state.v, state.omega] != [0, 0, 0] for state in driven) else "hard"
 
 
@@ -241,8 +248,8 @@ def outcome(pair):
     """What became of a contact, for the next tick."""
     points = pair.manifold.points
     found = Row(
-        touching=pair.met or pair.sensor, sensor=pair.sensor, count=len(points), id0=0, id1=0, mode=0, zero0=0, zero1=0, normal0=0, normal1=0,
-        tangent=0,
+        touching=pair.met or pair.sensor, sensor=pair.sensor, count=len(points), id0=0, id1=0, mode=0, zero0=0, zero1=0,
+        normal0=0, normal1=0, tangent=0,
     )
     rows = pair.contact
     if rows is None:

@@ -1,7 +1,5 @@
 """The constants of a world's contact solver, and bodies as ratios: no reciprocal of a mass or an inertia."""
 
-from types import SimpleNamespace as Row
-
 from ints import I64, TURN_PER_RADIAN_Q64, clamp, div, fits, mul, mul_div, round_shift, sat64, shifted, sqrt
 
 SOFT_BIAS, SOFT_MASS, SOFT_IMPULSE = 48_321_781, 1_021_964_838, 51_776_986

@@ -21,7 +21,8 @@ CONFIG = [
 BODY = [
     ("kind", "u8"), ("fixed_rotation", "bool"), ("mass", "i128"), ("inertia", "i128"), ("center", ("vec", "i64")),
     ("reach", "i64"), ("first", ("opt", "u32")), ("force", ("vec", "i128")), ("torque", "i128"),
-    ("linear_damping", "i64"), ("angular_damping", "i64"), ("mu", "u128"), ("user_data", "u64"), ("allow_sleep", "bool"),
+    ("linear_damping", "i64"), ("angular_damping", "i64"), ("mu", "u128"), ("user_data", "u64"),
+    ("allow_sleep", "bool"),
 ]
 SHAPE = ("enum", {
     0: ("circle", [("radius", "i64")]),
@@ -45,13 +46,15 @@ COLUMNS = ("x", "y", "vx", "vy", "angle", "omega")
 
 
 def arena(value):
-    return [("free", "u32"), ("live", "u32"), ("slots", ("seq", [("generation", "u32"), ("link", "u32"), ("value", value)]))]
+    slot = [("generation", "u32"), ("link", "u32"), ("value", value)]
+    return [("free", "u32"), ("live", "u32"), ("slots", ("seq", slot))]
 
 
 STATE = [
     ("config", CONFIG), ("tick", "u64"), ("bodies", arena(BODY)), *((name, ("seq", "i64")) for name in COLUMNS),
     ("quiet", ("seq", "u32")), ("colliders", arena(COLLIDER)), ("forms", arena(FORM)), ("attractors", arena(ATTRACTOR)),
-    ("pushes", ("seq", PUSH)), ("contacts", ("seq", CONTACT)), ("resting", ("seq", CONTACT)), ("status", ("seq", STATUS)),
+    ("pushes", ("seq", PUSH)), ("contacts", ("seq", CONTACT)), ("resting", ("seq", CONTACT)),
+    ("status", ("seq", STATUS)),
 ]
 COLLIDER_DEF = [
     ("shape", SHAPE), ("offset", ("vec", "i64")), ("angle", "i64"), ("density", "i128"), ("restitution", "i64"),
@@ -235,7 +238,7 @@ def play(data):
     head = reader.bytes(24)
     check(head[:8] == b"TAMIAS-R", "no replay")
     version, law = (int.from_bytes(head[at : at + 4], "little") for at in (8, 12))
-    check((version, law) == (REPLAY_VERSION, LAW), f"replay version {version}, law {law}: here are {REPLAY_VERSION}, {LAW}")
+    check((version, law) == (REPLAY_VERSION, LAW), f"version {version}, law {law}: here {REPLAY_VERSION}, {LAW}")
     chain = reader.integer("u64")
     check(chain == xxh3(head), "the header's hash does not fit it")
     ticks, started = 0, False

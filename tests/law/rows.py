@@ -54,19 +54,22 @@ class Line:
 class Contact:
     """A contact's rows. `places`: of its bodies among the movers; the same twice once it is taken out."""
 
-    def __init__(self, manifold, places, betweens, mobility, old, friction, scales):
+    def __init__(self, pair, between, mobility, old, scales):
         self.heavy = self.pushes = self.retired = False
-        self.write(manifold, places, betweens, mobility, old, friction, scales)
+        self.write(pair, [between] * 2, mobility, old, scales)
 
-    def write(self, manifold, places, betweens, mobility, old, friction, scales):
+    def write(self, pair, betweens, mobility, old, scales):
+        """`betweens`: for each point, from a's centre to b's. `old`: what the last tick left."""
+        manifold, friction = pair.manifold, pair.friction
         first = mobility[0].share(mobility[1])
         share = [first, ONE - first if mobility[1].moves() else 0]
         inertia = [scale(share[body], mobility[body].tau) for body in (0, 1)]
-        self.places = list(places)
+        self.places = list(pair.places)
         self.normal = n = [round_shift(c, 2) for c in manifold.normal]
         self.reply = [[round_shift(share[0] * c, 28) for c in n], [-round_shift(share[1] * c, 28) for c in n]]
         points = manifold.points
-        arms = [self.arms(points[at], betweens[at], manifold.normal, mobility) if at < len(points) else None for at in (0, 1)]
+        arms = [self.arms(p, between, manifold.normal, mobility) for p, between in zip(points, betweens)]
+        arms += [None] * (2 - len(arms))
         lower = int(len(points) > 1 and points[1].separation < points[0].separation)
         self.friction = Line(arms[lower] and arms[lower][1], inertia)
         self.points, self.limit, self.separation, carried = [], [0, 0], [FAR, FAR], 0
@@ -132,7 +135,7 @@ class Contact:
         return [self.friction.impulse, self.points[0].impulse, self.points[1].impulse]
 
     def renew(self, movers, write):
-        """Written anew between sweeps: impulses are taken back along the old directions and given along the new ones."""
+        """Written anew between sweeps: impulses are taken back along old directions, given along new ones."""
         peak = self.peak
         self.give(movers, [-impulse for impulse in self.impulses()])
         write(self)

@@ -1,7 +1,8 @@
 """Outlines of forms, their places in the world, and their masses."""
 
-from ints import I64, I128, clamp, div, fits, hypot, mul_div, round_shift, sat128, sat64, sin_cos
 from types import SimpleNamespace as Row
+
+from ints import I128, clamp, div, hypot, mul_div, round_shift, sat64, sat128, sin_cos
 
 PI_Q120 = 4_175_892_906_503_776_358_826_876_457_663_557_747
 ONE_Q92 = 1 << 92

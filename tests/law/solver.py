@@ -2,7 +2,7 @@
 
 import direct
 import narrow
-from ints import clamp, cross, dot, mul, rotate, sin_cos
+from ints import cross, dot, mul, rotate, sin_cos
 from motion import integrate
 from movers import Movers, state_of
 from pairs import ROUNDING, Pair, find, lasts, old, outcome, strikes, swings, turns, vote
@@ -83,7 +83,7 @@ def prepare(world, pairs, movers):
     hard = direct.find([vote(world, pair, past, scales) for pair in held], held, movers)
     for pair in held:
         between = narrow.sub(past[pair.bodies[1]].x, past[pair.bodies[0]].x)
-        pair.contact = Contact(pair.manifold, pair.places, [between] * 2, masses(world, pair), pair.known or old(), pair.friction, scales)
+        pair.contact = Contact(pair, between, masses(world, pair), pair.known or old(), scales)
         pair.contact.heavy = pair.heavy
     islands = [direct.Island(members, depth, movers, scales) for members, depth in hard]
     for island, (members, _) in zip(islands, hard):
@@ -97,7 +97,7 @@ def masses(world, pair):
 
 
 def ordered(held, movers):
-    """Contacts by colour: two of one colour share no body that moves. What has no colour comes last, heavy ones first."""
+    """Contacts by colour: two of one share no body that moves. Those without one come last, heavy ones first."""
     used, colored, rest = {}, {}, []
     for pair in held:
         moving = [place for place in pair.places if not movers.is_free(place)]
@@ -158,7 +158,7 @@ def substeps(world, held, islands, movers, timeline):
             # One that was taken out may be in again.
             pair.island, pair.mode, pair.manifold = None, 0, manifold
             pair.places = [movers.place_of(slot) for slot in pair.bodies]
-            pair.contact = Contact(manifold, pair.places, [between] * 2, masses(world, pair), old(), pair.friction, scales)
+            pair.contact = Contact(pair, between, masses(world, pair), old(), scales)
             pair.contact.backdate(movers.list)
             seat(late, pair.contact, movers)
             rows.append((pair.contact, pair.places))
@@ -196,10 +196,7 @@ def renew(world, pair, movers):
     pair.met |= contact.spent()
     pair.manifold = narrow.collide(*there, between, scales.base + mul(speed, scales.line, 79))
     betweens = half_on(pair.manifold, there, states, between, scales)
-    places, mobility = pair.places, masses(world, pair)
-    contact.renew(
-        movers.list, lambda c: c.write(pair.manifold, places, betweens, mobility, last, pair.friction, scales)
-    )
+    contact.renew(movers.list, lambda c: c.write(pair, betweens, masses(world, pair), last, scales))
 
 
 def half_on(manifold, there, states, between, scales):

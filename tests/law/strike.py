@@ -3,7 +3,7 @@
 Velocities and impulses are Q48 over 2^k; an impulse λ is carried as λ·(1/m_a + 1/m_b), a velocity.
 """
 
-from ints import clamp, cross, div, dot, mul, quotient, sat64
+from ints import clamp, cross, div, dot, mul, sat64
 
 LIMIT = 1 << 61
 ROUNDS = (32, 256)
@@ -147,7 +147,7 @@ class Strike:
         return (bound if (bound < 0) == (rough < 0) else 0) - now
 
     def slope(self, across):
-        """How the points that press would answer friction: 1/(κ − what they take of it), and by how much load yields."""
+        """How the points that press would answer friction: 1/(κ − what they take of it), and what of load yields."""
         p, q = self.points
         if p.impulse > 0 and q.impulse > 0:
             if self.determinant is None:

@@ -16,8 +16,8 @@ STATIC, KINEMATIC, DYNAMIC = range(3)
 COLUMNS = ("x", "y", "vx", "vy", "angle", "omega")
 # Commands that wake a body if they change it, and what of it wakes others as well.
 CHANGE = (
-    "set_kind", "set_position", "set_angle", "set_velocity", "set_angular_velocity", "set_force", "set_torque", "set_mass",
-    "set_fixed_rotation", "set_damping", "set_mu", "set_allow_sleep",
+    "set_kind", "set_position", "set_angle", "set_velocity", "set_angular_velocity", "set_force", "set_torque",
+    "set_mass", "set_fixed_rotation", "set_damping", "set_mu", "set_allow_sleep",
 )
 PLACE = ("x", "y", "angle", "kind", "mu")
 
@@ -32,7 +32,8 @@ def nothing(**given):
 
 
 def no_collider():
-    return Row(body=0, next=None, form=0, density=0, restitution=0, friction=0, filter=Row(category=1, mask=LIVE), sensor=0)
+    blank = Row(category=1, mask=LIVE)
+    return Row(body=0, next=None, form=0, density=0, restitution=0, friction=0, filter=blank, sensor=0)
 
 
 def no_form():
@@ -97,7 +98,7 @@ class World:
             return getattr(self, c.name)(c)
         if c.name in ("set_surface", "set_filter"):
             slot = self.state.colliders.slots[c.id.index].value.body
-        elif c.name in CHANGE + ("destroy_body", "apply_force", "apply_torque", "apply_impulse", "apply_angular_impulse", "wake"):
+        elif c.name in CHANGE or c.name in ("destroy_body", "wake") or c.name.startswith("apply"):
             slot = c.id.index
         if c.name in CHANGE:
             before = self.portrait(slot)
