@@ -9,7 +9,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use tamias2d::num::{cross, cross_wide, div, dot, hypot, mul, mul_add, mul_div, round_shift, sin_cos, sqrt};
-use tamias2d::replay::Recorder;
+use tamias2d::replay::{Player, Recorder};
 use tamias2d::{
     Acceleration, Angle, AngularVelocity, BodyDef, BodyKind, ColliderDef, Commands, Friction, Impulse, Length,
     Restitution, Shape, Vec2, Velocity, World, WorldDef,
@@ -32,7 +32,30 @@ fn python(script: &str, arguments: &[PathBuf], input: &str) {
     let output = child.wait_with_output().expect("it ends");
     let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
     println!("{out}");
-    assert!(output.status.success(), "{script}: {}\n{out}{err}", output.status);
+    assert!(output.status.success(), "{script}: {}\n{out}{err}{}", output.status, differences(&out));
+}
+
+/// Field by field, what the worlds that Python saved have instead of those of the same ticks here.
+fn differences(out: &str) -> String {
+    let mut text = String::new();
+    for line in out.lines().filter_map(|line| line.strip_prefix("DIFFERS\t")) {
+        let [replay, tick, save] = line.splitn(3, '\t').collect::<Vec<_>>()[..] else { continue };
+        let replay = std::fs::read(replay).expect("the replay is there");
+        let mut player = Player::new(&replay[..]).expect("a replay");
+        for _ in 0..tick.parse().expect("a tick") {
+            // The goldens may be of an older law: then these hashes differ as well.
+            let _ = player.step();
+        }
+        match World::load(&std::fs::read(save).expect("the save is there")) {
+            Ok(other) => {
+                let found = player.world().diff(&other);
+                text += &format!("here, and in Python, after tick {tick}:\n");
+                found.iter().take(20).for_each(|difference| text += &format!("  {difference}\n"));
+            }
+            Err(error) => text += &format!("Python's world after tick {tick}: {error}\n"),
+        }
+    }
+    text
 }
 
 /// Numbers that look random and are the same in each run (splitmix64).

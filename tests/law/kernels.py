@@ -1,4 +1,4 @@
-"""Number kernels against another implementation: reads `operation input… = result…` by lines, names what differs."""
+"""Number kernels against another implementation: reads lines `operation input… = result…`, names what differs."""
 
 import sys
 

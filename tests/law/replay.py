@@ -225,6 +225,11 @@ def load(data):
     return state
 
 
+def save(state):
+    head = b"TAMIAS-W" + written(SAVE_VERSION, "u32") + written(LAW, "u32")
+    return head + written(state, STATE) + words([state_hash(state)])
+
+
 def commands(reader):
     found = []
     while reader.at < len(reader.data):

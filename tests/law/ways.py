@@ -156,7 +156,8 @@ class Ways:
         p, q = a.at(time), b.at(time)
         return Row(
             d=narrow.sub(q.x, p.x), v=[tick(c) for c in narrow.sub(q.v, p.v)],
-            a=[tick(c) for c in narrow.sub(b.gain, a.gain)], angle=[p.angle, q.angle], omega=[tick(p.omega), tick(q.omega)], alpha=[tick(a.gain[2]), tick(b.gain[2])],
+            a=[tick(c) for c in narrow.sub(b.gain, a.gain)], angle=[p.angle, q.angle],
+            omega=[tick(p.omega), tick(q.omega)], alpha=[tick(a.gain[2]), tick(b.gain[2])],
         )
 
     def find_again(self, place, left):
