@@ -222,7 +222,7 @@ fn record(seed: u64) -> Vec<u8> {
 fn random_worlds_play_alike_in_python() {
     let folder = std::env::temp_dir().join(format!("tamias2d-law-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
-    let files: Vec<PathBuf> = (1..=24)
+    let files: Vec<PathBuf> = (1..=16)
         .map(|seed| {
             let path = folder.join(format!("random{seed}.replay"));
             std::fs::write(&path, record(seed)).expect("a file");
