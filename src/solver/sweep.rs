@@ -132,20 +132,19 @@ fn answer<const BIASED: bool>(
     }
     let way = gap.pick(separation, separation.add(avx2.narrow(SLOP)).min(zero));
     let rate = gap.pick(avx2.narrow(scales.close_rate), avx2.narrow(scales.push_rate));
-    // Limited before it is shifted, which is the same; it is below 0 where the way is. Both shifts bring in zeros, so
-    // numbers are moved up to be positive, and back in the sum. The lower half of the bias is its own.
-    let least = avx2.wide(scales.push << 20);
-    let bias = way.factor().mul(rate.factor()).max(least).sub(avx2.wide(i64::MIN)).shifted::<20>();
-    let speed = speed.half::<28>(avx2).sub(avx2.wide(i64::MIN)).shifted::<28>();
-    let sum = speed.add(bias).sub(avx2.wide((1 << 43) + (1 << 35)));
-    let sum = sum.min(avx2.wide(1 << 30)).max(avx2.wide(-(1 << 30)));
+    // Limited before it is shifted, which is the same. The shift brings in zeros, so the number is moved up to be positive,
+    // and back. The lower half of the bias is its own.
+    let bias = way.factor().mul(rate.factor()).max(avx2.wide(-(1 << 50))).min(avx2.wide((1 << 50) - (1 << 20)));
+    let bias = bias.sub(avx2.wide(i64::MIN)).shifted::<20>().sub(avx2.wide(1 << 43));
     let mass = gap.pick(avx2.narrow(1 << 30), avx2.narrow(scales.soft[0])).factor();
     let eased = load.min(load.shifted::<2>().add(avx2.narrow(scales.firm)));
     let give = gap.pick(zero, avx2.narrow(scales.soft[1])).factor().mul(eased.factor());
-    // At most 2³⁰, as mass and give are 1 together.
-    let answer = mass.mul(sum.low()).add(give).round::<30>(avx2).narrow();
-    let opens = avx2.wide(PUSHES).above(mass.mul(bias.low()).add(give)).mask();
-    let pushes = opens.or(avx2.narrow(LOAD as i32).above(load)).and(zero.above(way));
+    let opens = mass.mul(bias.low()).add(give);
+    let pushes = avx2.wide(PUSHES).above(opens).mask();
+    let pushes = pushes.or(avx2.narrow(LOAD as i32).above(load)).and(zero.above(way));
+    // Below 2³¹.
+    let speed = speed.round_limited(avx2).factor();
+    let answer = mass.mul(speed).add(opens.max(avx2.wide(scales.least_opens()))).round::<30>(avx2).narrow();
     (load.sub(answer).min(most).max(zero), pushes)
 }
 
