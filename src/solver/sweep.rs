@@ -132,18 +132,17 @@ fn answer<K: Words, const BIASED: bool>(
     }
     let way = gap.pick(separation, separation.add(k.narrow(SLOP)).min(zero));
     let rate = gap.pick(k.narrow(scales.close_rate), k.narrow(scales.push_rate));
-    // Limited before it is shifted, which is the same. The lower half of the bias is its own.
-    let least = k.wide(scales.push << 20);
-    let bias = way.factor().mul(rate.factor()).max(least).shifted::<20>(k);
-    let sum = speed.half::<28>(k).shifted::<28>(k).add(bias);
-    let sum = sum.min(k.wide(1 << 30)).max(k.wide(-(1 << 30)));
+    // Limited before it is shifted, which is the same.
+    let bias = way.factor().mul(rate.factor()).max(k.wide(-(1 << 50))).min(k.wide((1 << 50) - (1 << 20)));
+    let bias = bias.shifted::<20>(k).low();
     let mass = gap.pick(k.narrow(1 << 30), k.narrow(scales.soft[0])).factor();
     let eased = load.min(load.shifted::<2>().add(k.narrow(scales.firm)));
     let give = gap.pick(zero, k.narrow(scales.soft[1])).factor().mul(eased.factor());
-    // At most 2³⁰, as mass and give are 1 together.
-    let answer = mass.mul(sum.low()).add(give).round::<30>(k).narrow();
-    let opens = k.wide(PUSHES).above(mass.mul(bias.low()).add(give));
-    let pushes = opens.or(k.narrow(LOAD as i32).above(load)).and(zero.above(way));
+    let opens = mass.mul(bias).add(give);
+    let pushes = k.wide(PUSHES).above(opens).or(k.narrow(LOAD as i32).above(load)).and(zero.above(way));
+    // Below 2³¹.
+    let speed = speed.round_limited(k).factor();
+    let answer = mass.mul(speed).add(opens.max(k.wide(scales.least_opens()))).round::<30>(k).narrow();
     (load.sub(answer).min(most).max(zero), pushes)
 }
 
