@@ -1,14 +1,18 @@
-//! Stored state: bytes in and out, field lists, columns, and slots with generations.
+//! Stored state: bytes in and out, field lists, columns, slots with generations; what memory holds, field by field.
 
 mod arena;
 mod codec;
 mod column;
 mod record;
+mod sheet;
+mod show;
 
 pub(crate) use arena::{Arena, Row};
 pub use arena::{AttractorId, BodyId, ColliderId};
 pub use codec::DecodeError;
-pub(crate) use codec::{Hasher, Reader, Sink, hash_numbers, hash_words, put, put_count};
+pub(crate) use codec::{Hasher, Reader, Sink, hash_bytes, hash_numbers, hash_words, put, put_count};
 pub(crate) use column::Column;
 pub use record::Difference;
 pub(crate) use record::{Diff, Record, clone_fields, record, record_copy, record_enum};
+pub(crate) use sheet::{Cell, Sheet, Spot};
+pub(crate) use show::{Cells, Draft, Kind, Show, Tables, put_text, show};

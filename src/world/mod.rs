@@ -8,7 +8,9 @@ mod command;
 mod commands;
 mod config;
 mod query;
+mod show;
 mod sleep;
+mod stage;
 mod status;
 mod step;
 
@@ -23,6 +25,8 @@ pub use command::{Command, CommandError, INPUT_MAX, Reply};
 pub use commands::Commands;
 pub use config::{ConfigError, Integrator, Sleeping, WorldDef};
 pub use query::{ClosestPoint, RayHit};
+pub use stage::Stage;
+pub(crate) use step::Watch;
 pub use status::{Bound, Status, StatusEntry};
 
 /// A world of bodies under forces.
