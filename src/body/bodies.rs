@@ -5,7 +5,9 @@ use super::def::{BodyData, BodyDef};
 use super::rest::Rest;
 use crate::geom::Vec2;
 use crate::num::{Angle, AngularVelocity, Length, Quantity, Velocity};
-use crate::store::{Arena, BodyId, Cells, Column, DecodeError, Diff, Draft, Hasher, Kind, Reader, Record, Show, Sink, Tables};
+use crate::store::{
+    Arena, BodyId, Cells, Column, DecodeError, Diff, Draft, Hasher, Kind, Reader, Record, Show, Sink, Tables,
+};
 
 /// Declares the table from one list of columns: struct, save, load, hash, diff and copy.
 macro_rules! table {
@@ -113,11 +115,11 @@ impl Show for Moving<'_> {
 }
 
 impl Bodies {
-    /// Hands on all of it as tables.
-    pub(crate) fn show(&self, draft: &mut Draft, tables: &mut impl Tables) {
+    /// Hands on all of it as tables; `sorted`: whether a tick has sorted out who is awake.
+    pub(crate) fn show(&self, sorted: bool, draft: &mut Draft, tables: &mut impl Tables) {
         self.cold.show(draft, tables, ["bodies", "slots of bodies"], Kind::Body);
         self.show_motion(draft, tables);
-        self.rest.show(draft, tables);
+        self.rest.show(sorted, draft, tables);
     }
 
     /// Hands on the columns as a table.

@@ -2,7 +2,9 @@
 
 use super::bodies::Bodies;
 use crate::num::{Decimal, Quantity, RangeError, Time, Velocity, div, mul};
-use crate::store::{DecodeError, Draft, Kind, Reader, Record, Sink, Tables, clone_fields, put_count, record_copy, show};
+use crate::store::{
+    DecodeError, Draft, Kind, Reader, Record, Sink, Tables, clone_fields, put_count, record_copy, show,
+};
 use core::ops::Range;
 use serde::{Deserialize, Serialize};
 
@@ -173,7 +175,8 @@ impl Rest {
     }
 
     /// Hands on who sleeps as tables.
-    pub(super) fn show(&self, draft: &mut Draft, tables: &mut impl Tables) {
+    /// `sorted`: whether the runs are what a tick reads.
+    pub(super) fn show(&self, sorted: bool, draft: &mut Draft, tables: &mut impl Tables) {
         struct Quiet {
             ticks: u32,
         }
@@ -184,9 +187,9 @@ impl Rest {
         show!(Sleepers { count });
         draft.table(tables, "quiet", Kind::Body, self.ticks.iter().map(|&ticks| Quiet { ticks }));
         draft.table(tables, "sleepers", Kind::World, core::iter::once(Sleepers { count: self.sleepers }));
-        // Found anew where they are stale.
-        let runs = if self.stale { &[][..] } else { &self.runs };
-        draft.table(tables, "runs of slots awake", Kind::List, runs.iter());
+        if sorted {
+            draft.table(tables, "runs of slots awake", Kind::List, self.runs.iter());
+        }
     }
 
     /// XXH3-64 of the numbers' little-endian bytes.

@@ -1,8 +1,6 @@
 //! What of a contact is state: that it touches, and the impulses with which the next tick begins.
 
-use crate::store::{
-    Cells, ColliderId, DecodeError, Diff, Draft, Kind, Reader, Record, Show, Sink, Tables, hash_words,
-};
+use crate::store::{Cells, ColliderId, DecodeError, Diff, Draft, Kind, Reader, Record, Show, Sink, Tables, hash_words};
 
 /// A pair of colliders that has contact points, or a sensor and what overlaps it.
 ///

@@ -37,21 +37,7 @@ show!(Scales {
     touching,
     aside,
 });
-show!(Flight {
-    slot,
-    place,
-    time,
-    state,
-    gain,
-    weight,
-    first,
-    strikes,
-    aside,
-    around,
-    looked,
-    changed,
-    pushed
-});
+show!(Flight { slot, place, time, state, gain, weight, first, strikes, aside, around, looked, changed, pushed });
 
 impl Show for Aabb {
     fn show(&self, cells: &mut Cells<'_>) {

@@ -14,5 +14,5 @@ pub(crate) use codec::{Hasher, Reader, Sink, hash_bytes, hash_numbers, hash_word
 pub(crate) use column::Column;
 pub use record::Difference;
 pub(crate) use record::{Diff, Record, clone_fields, record, record_copy, record_enum};
-pub(crate) use sheet::{Cell, Sheet, Spot};
+pub(crate) use sheet::{Cell, Sheet, Spot, take_text};
 pub(crate) use show::{Cells, Draft, Kind, Show, Tables, put_text, show};

@@ -160,7 +160,9 @@ impl<'b> Sheet<'b> {
         let keys = |sheet: &Sheet<'_>| (0..sheet.len()).map(|row| sheet.key(row)).collect::<Vec<_>>();
         let (a, b) = if keyed { (keys(self), keys(other)) } else { (Vec::new(), Vec::new()) };
         let strange = a.iter().zip(&b).filter(|(a, b)| a != b).count();
-        let in_order = |length: usize| (0..length).map(|row| [(row < self.len()).then_some(row), (row < other.len()).then_some(row)]);
+        let in_order = |length: usize| {
+            (0..length).map(|row| [(row < self.len()).then_some(row), (row < other.len()).then_some(row)])
+        };
         if !keyed || self.len() == other.len() && strange <= 1 {
             return in_order(self.len().max(other.len())).collect();
         }

@@ -26,8 +26,8 @@ pub use commands::Commands;
 pub use config::{ConfigError, Integrator, Sleeping, WorldDef};
 pub use query::{ClosestPoint, RayHit};
 pub use stage::Stage;
-pub(crate) use step::Watch;
 pub use status::{Bound, Status, StatusEntry};
+pub(crate) use step::Watch;
 
 /// A world of bodies under forces.
 ///

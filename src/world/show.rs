@@ -3,7 +3,7 @@
 
 use super::stage::Stage;
 use crate::World;
-use crate::store::{Draft, Kind, Show, Tables, show};
+use crate::store::{Draft, Kind, Tables, show};
 
 impl World {
     /// Hands on all of it as it is after a stage, as tables, in an order in which what is first read stands first. What belongs
@@ -34,7 +34,7 @@ impl World {
         } = self;
         draft.table(tables, "configuration", Kind::World, core::iter::once(config));
         draft.table(tables, "clock", Kind::World, core::iter::once(Clock { tick: *tick }));
-        bodies.show(draft, tables);
+        bodies.show((Stage::Sort..=Stage::Release).contains(&stage), draft, tables);
         colliders.show(draft, tables);
         attractors.show(draft, tables, ["attractors", "slots of attractors"], Kind::Attractor);
         draft.table(tables, "forces", Kind::OfBody, pushes.iter());
