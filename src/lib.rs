@@ -15,7 +15,8 @@
 //! | `contact` | pairs, impulses that last, events |
 //! | `solver` | the contact rows, impacts |
 //! | `world` | the world, its step, its commands, its queries |
-//! | `snapshot` | save, load, hash, diff |
+//! | `snapshot` | save, load, hash, diff, frames |
+//! | `rollback` | the last ticks, to go back to |
 //! | [`replay`] | recording, playing, verifying |
 //! | [`guide`] | chapters: what is promised, and why |
 // Allowed in solver/avx2.rs alone.
@@ -31,6 +32,7 @@ mod motion;
 mod narrow;
 pub mod num;
 pub mod replay;
+mod rollback;
 #[cfg(feature = "scene")]
 pub mod scene;
 mod shape;
@@ -46,8 +48,9 @@ pub use num::{
     Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Density, Energy, Force, Friction, Impulse, Inertia,
     Length, Mass, Mu, NumError, Radians, RangeError, Restitution, Time, Torque, Velocity,
 };
+pub use rollback::{Rollback, RollbackError};
 pub use shape::{ColliderDef, Filter, Shape, ShapeError};
-pub use snapshot::{HashPart, LAW, SAVE_VERSION};
+pub use snapshot::{Frame, FrameError, HashPart, LAW, SAVE_VERSION};
 pub use solver::{Impact, ImpactError, Striker, impact};
 pub use store::{AttractorId, BodyId, ColliderId, DecodeError, Difference};
 pub use world::{

@@ -17,6 +17,7 @@ const FLOORS: [&[&str]; 11] = [
     &["solver"],
     &["world"],
     &["snapshot"],
+    &["rollback"],
     &["replay"],
     &["scene", "guide"],
 ];
