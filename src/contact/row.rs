@@ -141,6 +141,12 @@ impl Contacts {
         self.rows.iter().map(|&row| Contact::unpack(row))
     }
 
+    /// A row as memory has it, for faults.
+    #[cfg(test)]
+    pub(crate) fn memory(&mut self, at: usize) -> &mut [u64; WORDS] {
+        &mut self.rows[at]
+    }
+
     pub(crate) fn clear(&mut self) {
         self.rows.clear();
     }

@@ -123,6 +123,20 @@ fn show_rows(draft: &mut Draft, tables: &mut impl Tables, pairs: &[Pair], blocks
     draft.table(tables, "rows", Kind::Pair, rows);
 }
 
+/// What of the solver a fault may hit, in tests.
+#[cfg(test)]
+impl Solver {
+    pub(crate) fn memory(&mut self) -> (&mut [Block], &mut Movers, &mut [Collision]) {
+        (&mut self.blocks, &mut self.movers, &mut self.timeline.collisions)
+    }
+
+    /// Where the row of a pair sits: block and lane.
+    pub(crate) fn seat(&self, row: u32) -> (usize, usize) {
+        let seat = self.colors.seats[row as usize] as usize;
+        (seat / LANES, seat % LANES)
+    }
+}
+
 impl Solver {
     /// Hands on what lasts from tick to tick as tables.
     pub(crate) fn show(&self, draft: &mut Draft, tables: &mut impl Tables) {
