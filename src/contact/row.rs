@@ -143,7 +143,7 @@ impl Contacts {
 
     /// A row as memory has it, for faults.
     #[cfg(test)]
-    pub(crate) fn memory(&mut self, at: usize) -> &mut [u64; WORDS] {
+    pub(crate) fn raw(&mut self, at: usize) -> &mut [u64; WORDS] {
         &mut self.rows[at]
     }
 
@@ -160,6 +160,11 @@ impl Contacts {
     /// Hands on a table of them.
     pub(crate) fn show(&self, draft: &mut Draft, tables: &mut impl Tables, name: &'static str) {
         draft.table(tables, name, Kind::Contact, self.iter());
+    }
+
+    /// How many bytes of memory the rows use.
+    pub(crate) fn memory(&self) -> usize {
+        size_of_val(self.rows.as_slice())
     }
 
     /// XXH3-64 of the rows' little-endian bytes.

@@ -49,7 +49,8 @@ impl Show for Aabb {
 
 impl Show for Collision {
     fn show(&self, cells: &mut Cells<'_>) {
-        let Collision { a, b, order, time, point, normal, impulse, before, after } = self;
+        // Tick and ordinal are given when the tick ends.
+        let Collision { tick: _, ordinal: _, a, b, order, time, point, normal, impulse, before, after } = self;
         cells.field("a", |c| a.show(c));
         cells.field("b", |c| b.show(c));
         cells.field("order", |c| order.show(c));
