@@ -602,10 +602,10 @@ fn recorded_runs_verify_and_bad_files_are_named() {
         std::fs::write(&path, bytes).expect("the test's folder");
         path
     };
-    // An idle tick has 13 bytes, the end 25: cut inside tick 98, and change the hash of tick 50.
-    let cut = write("cut.replay", &bytes[..bytes.len() - 25 - 13 * 2 - 3]);
+    // An idle tick has 9 bytes, the parts after tick 60 have 81, the end 25: cut inside tick 98, and change the hash of tick 50.
+    let cut = write("cut.replay", &bytes[..bytes.len() - 25 - 9 * 2 - 3]);
     let mut changed = bytes.clone();
-    let at = bytes.len() - 25 - 13 * 51 + 1;
+    let at = bytes.len() - 25 - 9 * 51 - 81 + 1;
     changed[at] ^= 1;
     let changed = write("changed.replay", &changed);
     let mut longer = bytes.clone();
