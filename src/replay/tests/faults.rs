@@ -211,7 +211,6 @@ fn derived() -> Vec<Kind> {
         "prepared motion" "push" ALWAYS |w, i of w.bodies.cold.len(), d| flip(&mut w.drive.push_at[i], i, d);
         "prepared damping" "line_span" ALWAYS |w, i of w.drive.damped.len(), d| flip(&mut w.drive.damped[i].line_span, i, d);
         "prepared damping" "turn.exp" ALWAYS |w, i of w.drive.damped.len(), d| flip(&mut w.drive.damped[i].turn.exp, i, d);
-        "limited accelerations" "" ALWAYS |w, i of w.drive.limited.len(), d| flip(&mut w.drive.limited[i], i, d);
         "mobilities" "sigma" ALWAYS |w, i of w.bodies.cold.len(), d| flip(&mut w.solver.mobilities[i].sigma, i, d);
         "mobilities" "tau" ALWAYS |w, i of w.bodies.cold.len(), d| flip(&mut w.solver.mobilities[i].tau, i, d);
         "mobilities" "fixed" ALWAYS |w, i of w.bodies.cold.len(), d| flip(&mut w.solver.mobilities[i].fixed, i, d);

@@ -159,7 +159,7 @@ fn segments_verify_what_the_whole_does() {
 #[cfg_attr(debug_assertions, ignore = "takes minutes where nothing is optimised")]
 fn a_fault_in_ten_minutes_is_found_in_seconds() {
     let mut dice = Dice(5);
-    for _ in 0..3 {
+    for _ in 0..2 {
         let fault = 1 + dice.below(36_000) as u64;
         let game = |flight_ticks| {
             let options = Recording { flight_ticks, ..Recording::default() };

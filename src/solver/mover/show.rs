@@ -1,0 +1,25 @@
+//! Movers, field by field.
+
+use super::{Course, Mover, Movers};
+use crate::store::{Cells, Draft, Kind, Show, Tables, show};
+
+show!(Mover { v, w, phi, d });
+show!(Course { slot, start, begin, kick, cut, sum, spin_max, hit, pushed, slowed });
+
+/// A body as rows see it: the speeds of a substep's beginning before those that they make of them.
+struct Moved<'m>(&'m Course, &'m Mover);
+
+impl Show for Moved<'_> {
+    fn show(&self, cells: &mut Cells<'_>) {
+        self.0.show(cells);
+        self.1.show(cells);
+    }
+}
+
+impl Movers {
+    /// Hands on all of it as tables.
+    pub(crate) fn show(&self, draft: &mut Draft, tables: &mut impl Tables) {
+        let movers = self.courses.iter().zip(&self.lanes).map(|(course, lane)| Moved(course, lane));
+        draft.table(tables, "movers", Kind::OfBody, movers);
+    }
+}
