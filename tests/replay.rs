@@ -8,7 +8,7 @@ use proptest::prelude::{ProptestConfig, any, prop_assert_eq, proptest};
 use std::cell::RefCell;
 use std::io::{self, Write};
 use std::rc::Rc;
-use tamias2d::replay::{Player, REPLAY_VERSION, Recorder, ReplayError, Summary};
+use tamias2d::replay::{Player, REPLAY_VERSION, Recorder, Recording, ReplayError, Summary, read_index};
 use tamias2d::{
     Angle, Attractor, AttractorId, BodyDef, BodyId, BodyKind, ColliderId, Command, CommandError, Commands, DecodeError,
     Filter, LAW, Vec2, World, WorldDef,
@@ -143,7 +143,7 @@ proptest! {
         prop_assert_eq!(player.world().hash(), hash);
         let summary = Summary { ticks, commands: accepted, hash };
         prop_assert_eq!(verify(&file).expect("it plays"), summary);
-        prop_assert_eq!(Player::new(file.as_slice()).expect("a replay").inspect().expect("whole"), summary);
+        prop_assert_eq!(Player::new(file.as_slice()).expect("a replay").inspect().expect("whole").summary, summary);
     }
 }
 
@@ -354,13 +354,13 @@ fn commands_after_the_last_tick_are_played() {
 }
 
 #[test]
-fn an_idle_tick_costs_thirteen_bytes() {
+fn an_idle_tick_costs_nine_bytes() {
     let tape = Tape::new(usize::MAX);
     let mut game = Recorder::new(start(), tape.clone()).expect("it can be written");
     for _ in 0..10 {
         let before = tape.len();
         game.step();
-        assert_eq!(tape.len() - before, 13);
+        assert_eq!(tape.len() - before, 9);
     }
     let before = tape.len();
     drop(game.finish().expect("it can be written"));
@@ -443,7 +443,7 @@ fn every_flipped_bit_is_found_at_its_place() {
 }
 
 #[test]
-fn a_bit_flipped_in_the_header_or_the_digest_is_named() {
+fn a_bit_flipped_in_the_header_or_the_end_is_named() {
     let (file, _) = short();
     let flipped = |at: usize| {
         let mut bytes = file.clone();
@@ -456,12 +456,10 @@ fn a_bit_flipped_in_the_header_or_the_digest_is_named() {
     assert_eq!(flipped(20), header);
     assert_eq!(flipped(31), header);
     let end = file.len() - 25;
-    assert_eq!(flipped(end + 1), format!("replay corrupt at tick 7, byte {end}: the digest does not fit the file"));
-    assert_eq!(
-        flipped(end + 9),
-        format!("replay corrupt at tick 7, byte {end}: the end's chain is not that of the records")
-    );
-    assert_eq!(flipped(end + 24), format!("replay corrupt at tick 7, byte {end}: the digest does not fit the file"));
+    let chain = format!("replay corrupt at tick 7, byte {end}: the end's chain is not that of the records");
+    for at in [1, 9, 17, 24] {
+        assert_eq!(flipped(end + at), chain);
+    }
     assert_eq!(flipped(40), "replay corrupt at tick 0, byte 32: the record's check does not fit it");
 }
 
@@ -538,9 +536,12 @@ impl Forge {
     }
 
     fn idle(self, hash: u64) -> Forge {
+        let mut forge = self;
         let mut record = vec![0x02];
         record.extend(hash.to_le_bytes());
-        self.chained(&record)
+        forge.chain = XxHash3_64::oneshot_with_seed(forge.chain, &record);
+        forge.bytes.extend(record);
+        forge
     }
 
     /// A tick (0x03) or a tail (0x04) with encoded commands.
@@ -551,11 +552,12 @@ impl Forge {
     }
 
     fn end(mut self, ticks: u64) -> Vec<u8> {
-        self.bytes.push(0x0f);
-        self.bytes.extend(ticks.to_le_bytes());
-        self.bytes.extend(self.chain.to_le_bytes());
-        let digest = XxHash3_64::oneshot(&self.bytes);
-        self.bytes.extend(digest.to_le_bytes());
+        let mut record = vec![0x0f];
+        record.extend(ticks.to_le_bytes());
+        record.extend(0u64.to_le_bytes());
+        let chain = XxHash3_64::oneshot_with_seed(self.chain, &record);
+        self.bytes.extend(record);
+        self.bytes.extend(chain.to_le_bytes());
         self.bytes
     }
 }
@@ -597,7 +599,7 @@ fn the_format_is_as_documented() {
     game.set_user_data(TWO, 19).expect("accepted");
     forge = forge.with_commands(0x04, game.world().hash(), &set_user_data(TWO, 19));
     assert_eq!(game.finish().expect("it can be written"), forge.end(3));
-    assert_eq!(REPLAY_VERSION, 2);
+    assert_eq!(REPLAY_VERSION, 3);
 }
 
 #[test]
@@ -620,7 +622,7 @@ fn a_divergence_is_named_at_its_tick() {
             format!("replay diverged at tick {tick}: hash {computed:016x}, recorded {recorded:016x}")
         );
         // The file itself is whole.
-        assert_eq!(Player::new(file.as_slice()).expect("a replay").inspect().expect("it is whole").ticks, 6);
+        assert_eq!(Player::new(file.as_slice()).expect("a replay").inspect().expect("it is whole").summary.ticks, 6);
     }
     // A tail that diverges is named at the last tick.
     let file = Forge::new(60).world(&start()).idle(hashes[0]).with_commands(0x04, 5, &set_user_data(TWO, 1)).end(1);
@@ -676,12 +678,15 @@ fn other_versions_laws_and_tick_rates_are_refused() {
     assert!(matches!(error(&file(Forge::of(1, LAW, 60, 0))), ReplayError::Version { found: 1, known: REPLAY_VERSION }));
     assert_eq!(
         error(&file(Forge::of(1, LAW, 60, 0))).to_string(),
-        "replay of format version 1, this build reads version 2"
+        "replay of format version 1, this build reads version 3: record it anew, or play it with the build that made it"
     );
     assert!(matches!(error(&file(Forge::of(REPLAY_VERSION, LAW + 1, 60, 0))), ReplayError::Law { known: LAW, .. }));
     assert_eq!(
         error(&file(Forge::of(REPLAY_VERSION, 7, 60, 0))).to_string(),
-        format!("replay under arithmetic law 7, this build computes by law {LAW}")
+        format!(
+            "replay under arithmetic law 7, this build computes by law {LAW} and would play it differently: play it with a build \
+             of law 7, or record it anew"
+        )
     );
     assert_eq!(
         error(&file(Forge::new(61))).to_string(),
@@ -707,12 +712,12 @@ fn ancillary_records_are_skipped_and_unknown_ones_refused() {
             .record(last, &[0; 300])
             .end(2)
     };
-    for tag in [0x80, 0x9c, 0xff] {
+    for tag in [0x84, 0x9c, 0xff] {
         assert_eq!(verify(&with([tag; 3])).expect("it plays"), Summary { ticks: 2, commands: 0, hash: hashes[1] });
     }
     for unknown in [0x00, 0x05, 0x0e, 0x10, 0x42, 0x7f] {
         for (place, tick) in [(0, 0), (1, 2), (2, 3)] {
-            let mut tags = [0x80; 3];
+            let mut tags = [0x84; 3];
             tags[place] = unknown;
             let found = error(&with(tags));
             let ReplayError::UnknownRecord { tick: at, offset, tag } = found else { panic!("{found:?}") };
@@ -751,20 +756,25 @@ fn records_out_of_place_are_refused() {
     // Records that were left out, doubled or moved, each with its own check.
     let records = |order: &[usize]| {
         let whole = begin().world(&world).idle(hashes[0]).idle(hashes[1]).idle(hashes[2]);
-        let first = whole.bytes.len() - 3 * 13;
+        let first = whole.bytes.len() - 3 * 9;
         let mut bytes = whole.bytes[..first].to_vec();
         for &at in order {
-            bytes.extend(&whole.bytes[first + 13 * at..][..13]);
+            bytes.extend(&whole.bytes[first + 9 * at..][..9]);
         }
         Forge { bytes, chain: whole.chain }.end(order.len() as u64)
     };
     assert_eq!(verify(&records(&[0, 1, 2])).expect("it plays").ticks, 3);
-    let check = "the record's check does not fit it";
+    // Idle ticks have no check of their own: the hash says where, and the next check that it is the file's fault.
+    let check = "the end's chain is not that of the records";
     assert_eq!(corrupt(&records(&[1, 2])), (1, check));
     assert_eq!(corrupt(&records(&[0, 2])), (2, check));
     assert_eq!(corrupt(&records(&[0, 0, 1, 2])), (2, check));
     assert_eq!(corrupt(&records(&[1, 0, 2])), (1, check));
-    assert_eq!(corrupt(&records(&[0, 1])), (3, "the end's chain is not that of the records"));
+    assert_eq!(corrupt(&records(&[0, 1])), (3, check));
+    // Where no check follows, nobody knows whose fault a hash is.
+    let mut cut = records(&[1]);
+    cut.truncate(cut.len() - 25);
+    assert_eq!(corrupt(&cut), (1, "a hash differs, and the file ends before a check says whether it was recorded so"));
 }
 
 #[test]
@@ -874,5 +884,126 @@ fn a_tick_of_very_many_commands_is_decoded_one_by_one() {
     assert_eq!(result.expect("as recorded").commands, 100_000);
     assert!(largest <= file.len() * 9 / 8, "{largest} bytes for a file of {}", file.len());
     let player = Player::new(file.as_slice()).expect("as recorded");
-    assert_eq!(player.inspect().expect("as recorded").commands, 100_000);
+    assert_eq!(player.inspect().expect("as recorded").summary.commands, 100_000);
+}
+
+/// A small recording with all that a recording can have: keyframes by whole saves and by reference, parts, evidence, an index.
+fn rich() -> Vec<u8> {
+    let mut world = World::new(&WorldDef { tick_rate: 15, ..WorldDef::default() }).expect("accepted");
+    let body = world.create_body(&BodyDef { velocity: vel(1.0, 2.0), ..BodyDef::default() }).expect("accepted");
+    let options = Recording { keyframe_seconds: 1, parts_ticks: 6, flight_ticks: 2 };
+    let mut game = Recorder::with(world, Vec::new(), options).expect("it can be written");
+    for tick in 1..=48 {
+        if tick == 20 {
+            game.set_user_data(body, 5).expect("accepted");
+        }
+        game.step();
+        if tick == 33 {
+            assert!(game.alarm(33) && !game.alarm(30));
+        }
+    }
+    game.set_user_data(body, 6).expect("accepted");
+    assert_eq!(game.fault(), None);
+    game.finish().expect("it can be written")
+}
+
+#[test]
+fn every_truncation_and_every_flipped_bit_of_keyframes_parts_and_evidence_is_detected() {
+    let file = rich();
+    let contents = Player::new(file.as_slice()).expect("a replay").inspect().expect("whole");
+    assert_eq!((contents.keyframes.len(), contents.evidence), (3, 2));
+    assert_eq!(verify(&file).expect("it plays"), contents.summary);
+    println!("{} bytes", file.len());
+    for length in 0..file.len() {
+        let read = Player::new(&file[..length]).and_then(Player::inspect);
+        assert!(read.is_err(), "cut at {length}");
+    }
+    let whole = |bytes: &[u8]| Player::new(bytes).and_then(Player::inspect).map(drop);
+    let mut bytes = file.clone();
+    for at in 0..file.len() {
+        for bit in 0..8 {
+            bytes[at] ^= 1 << bit;
+            let (result, _, largest) = measure(|| whole(&bytes));
+            assert!(result.is_err(), "byte {at} bit {bit}");
+            assert!(largest <= file.len() * 2, "byte {at} bit {bit} allocates {largest}");
+            if bit == at % 8 {
+                assert!(verify(&bytes).is_err(), "byte {at} bit {bit}");
+                // Random access: the index, and a keyframe that it names, are right or refused.
+                let mut input = io::Cursor::new(bytes.as_slice());
+                for keyframe in read_index(&mut input).unwrap_or_default() {
+                    assert!(contents.keyframes.contains(&keyframe), "byte {at} bit {bit}");
+                    if let Ok(player) = Player::at(io::Cursor::new(bytes.as_slice()), &keyframe) {
+                        let sound = Player::at(io::Cursor::new(file.as_slice()), &keyframe).expect("a keyframe");
+                        assert_eq!(player.world().hash(), sound.world().hash());
+                    }
+                }
+            }
+            bytes[at] ^= 1 << bit;
+        }
+    }
+}
+
+/// At 60 ticks a second and 100 bodies that do nothing, with parts and keyframes.
+#[test]
+fn an_idle_game_records_less_than_a_kilobyte_a_second() {
+    let mut world = world(0.0, -9.8);
+    world
+        .create_body(&BodyDef {
+            kind: BodyKind::Static,
+            position: at(0.0, -1.0),
+            colliders: vec![common::rectangle(200.0, 2.0)],
+            ..BodyDef::default()
+        })
+        .expect("accepted");
+    for i in 1..100 {
+        // Stacks of four: each body touches two others.
+        let position = at(f64::from(i / 4) * 3.0 - 40.0, f64::from(i % 4) + 0.5);
+        world
+            .create_body(&BodyDef { position, colliders: vec![common::rectangle(1.0, 1.0)], ..BodyDef::default() })
+            .expect("accepted");
+    }
+    run(&mut world, 60);
+    let tape = Tape::new(usize::MAX);
+    let mut game = Recorder::new(world, tape.clone()).expect("it can be written");
+    let before = tape.len();
+    const SECONDS: usize = 120;
+    for _ in 0..SECONDS * 60 {
+        game.step();
+    }
+    let rate = (tape.len() - before) as f64 / SECONDS as f64;
+    println!("{rate:.1} bytes a second");
+    assert!(rate <= 1000.0, "{rate} bytes a second");
+    drop(game.finish().expect("it can be written"));
+    let file = tape.bytes.borrow().clone();
+    assert_eq!(Player::new(file.as_slice()).expect("a replay").inspect().expect("whole").keyframes.len(), 2);
+}
+
+#[test]
+fn keyframes_that_hold_another_world_are_found_by_playing() {
+    // A keyframe of a world that was not played, in a file that is whole.
+    let mut world = start();
+    world.step();
+    let first = world.hash();
+    let mut other = world.clone();
+    other.set_user_data(TWO, 77).expect("accepted");
+    let keyframe = |forge: Forge, state: &World| {
+        let history = XxHash3_64::oneshot_with_seed(start().hash(), &first.to_le_bytes());
+        let (offset, chain) = (forge.bytes.len() as u64, forge.chain);
+        let mut payload = Vec::new();
+        for value in [1, 0, history, chain, offset] {
+            payload.extend(value.to_le_bytes());
+        }
+        payload.extend(state.save());
+        forge.record(0x80, &payload)
+    };
+    let file = |state: &World| keyframe(Forge::new(60).world(&start()).idle(first), state).end(1);
+    assert_eq!(verify(&file(&world)).expect("it plays").ticks, 1);
+    let found = error(&file(&other));
+    assert!(matches!(found, ReplayError::DivergedKeyframe { tick: 1, .. }), "{found:?}");
+    // Parts as well.
+    let mut parts: Vec<u8> = world.hash_parts().iter().flat_map(|part| part.hash.to_le_bytes()).collect();
+    let with_parts = |parts: &[u8]| Forge::new(60).world(&start()).idle(first).record(0x81, parts).end(1);
+    assert_eq!(verify(&with_parts(&parts)).expect("it plays").ticks, 1);
+    parts[8] ^= 1;
+    assert!(matches!(error(&with_parts(&parts)), ReplayError::DivergedPart { tick: 1, part: "bodies", .. }));
 }

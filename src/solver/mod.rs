@@ -21,6 +21,7 @@ mod mover;
 mod prepare;
 mod rows;
 mod scales;
+mod show;
 mod squeeze;
 mod strike;
 #[cfg(target_arch = "x86_64")]
@@ -48,6 +49,7 @@ use mover::Movers;
 use prepare::Joint;
 use rows::{Block, LANES};
 pub(crate) use scales::Scales;
+pub(crate) use show::Substep;
 use timeline::{Settled, Stage, Timeline};
 use turning::{Turning, turns};
 
@@ -200,7 +202,8 @@ impl Solver {
     }
 
     /// Impacts and substeps, after the bodies have moved as if nothing touched them; bodies that were struck or pushed are
-    /// put where that brings them.
+    /// put where that brings them. `watch` sees what each substep leaves.
+    #[allow(clippy::too_many_arguments, reason = "what a tick is made of, and who looks")]
     pub(crate) fn run(
         &mut self,
         touch: &mut Touch,
@@ -209,6 +212,7 @@ impl Solver {
         contacts: &Contacts,
         drive: &Drive,
         faults: &mut Vec<Fault>,
+        mut watch: impl FnMut(u32, Substep<'_>),
     ) {
         let Solver {
             mobilities,
@@ -293,6 +297,7 @@ impl Solver {
                     kernel.solve::<false>(block, lanes, &mut movers.lanes, scales);
                 }
                 direct.solve::<false>(blocks, &mut movers.lanes, scales);
+                watch(substep, Substep { touch, bodies, movers, blocks, colors, timeline });
             }
             movers.hold_back(mobilities);
             for (row, &places) in places.iter().enumerate() {

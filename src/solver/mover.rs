@@ -1,5 +1,6 @@
 //! Bodies as the rows see them, for one tick: velocities in full, positions as what changed since the tick began.
 
+mod show;
 mod store;
 
 use super::flight::{Past, State, rim};

@@ -60,6 +60,11 @@ impl Squeeze {
         }
     }
 
+    /// How fast the body at a place may be; 0 if as fast as it likes.
+    pub(super) fn most(&self, place: usize) -> i64 {
+        self.most.get(place).copied().unwrap_or(0)
+    }
+
     /// An impact changed the velocity of a body. σ is at least an eighth of its reach.
     pub(super) fn allow(&mut self, place: u32, change: [i64; 3]) {
         if let Some(most) = self.most.get_mut(place as usize).filter(|most| **most > 0) {

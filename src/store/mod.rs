@@ -1,9 +1,11 @@
-//! Stored state: bytes in and out, field lists, columns, and slots with generations.
+//! Stored state: bytes in and out, field lists, columns, slots with generations; what memory holds, field by field.
 
 mod arena;
 mod codec;
 mod column;
 mod record;
+mod sheet;
+mod show;
 
 pub(crate) use arena::{Arena, Row};
 pub use arena::{AttractorId, BodyId, ColliderId};
@@ -12,3 +14,5 @@ pub(crate) use codec::{Hasher, Reader, Sink, hash_bytes, hash_numbers, hash_word
 pub(crate) use column::Column;
 pub use record::Difference;
 pub(crate) use record::{Diff, Record, clone_fields, record, record_copy, record_enum};
+pub(crate) use sheet::{Cell, Sheet, Spot, take_text};
+pub(crate) use show::{Cells, Draft, Kind, Show, Tables, put_text, show};

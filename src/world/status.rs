@@ -14,7 +14,7 @@ pub struct StatusEntry {
     pub bound: Bound,
 }
 
-record!(StatusEntry { tick, body, bound });
+record!(StatusEntry { tick, body, bound } shown);
 
 impl core::fmt::Display for StatusEntry {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
@@ -46,6 +46,12 @@ impl Status {
         if self.entries.iter().all(|entry| entry.bound != bound) {
             self.entries.push(StatusEntry { tick, body, bound });
         }
+    }
+
+    /// The entries as memory has them, for faults.
+    #[cfg(test)]
+    pub(crate) fn memory(&mut self) -> &mut [StatusEntry] {
+        &mut self.entries
     }
 
     pub(crate) fn clear(&mut self) {
