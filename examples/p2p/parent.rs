@@ -2,7 +2,6 @@
 
 use crate::Options;
 use crate::peer::Role;
-use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -122,16 +121,24 @@ fn compete(options: &Options, arguments: &[String], processes: &mut Vec<Process>
     Ok(())
 }
 
-/// By tick, the line that a process wrote about it.
-fn stream(options: &Options, role: Role) -> Result<BTreeMap<u64, String>, Failure> {
+/// The lines that a process wrote, and the tick of the first; each tick after it has come once, in order.
+fn stream(options: &Options, role: Role) -> Result<(u64, Vec<String>), Failure> {
     let text = std::fs::read_to_string(options.out.join(format!("{}.hashes", role.name())))?;
-    text.lines().map(|line| Ok((line.split(' ').next().unwrap_or("").parse()?, line.to_owned()))).collect()
+    let lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let tick = |line: &String| line.split(' ').next().unwrap_or("").parse::<u64>();
+    let begin = lines.first().map_or(Ok(0), tick)?;
+    for (line, expected) in lines.iter().zip(begin..) {
+        if tick(line)? != expected {
+            return Err(format!("{}: tick {expected} is missing or came twice", role.name()).into());
+        }
+    }
+    Ok((begin, lines))
 }
 
 /// Compares all confirmed states, and names the first that differs.
 fn compare(options: &Options) -> Result<(), Failure> {
-    let first = stream(options, Role::Player(0))?;
-    if first.len() as u64 != options.ticks {
+    let (begin, first) = stream(options, Role::Player(0))?;
+    if (begin, first.len() as u64) != (1, options.ticks) {
         return Err(format!("player0 confirmed {} of {} ticks", first.len(), options.ticks).into());
     }
     let mut others: Vec<Role> = (1..options.players).map(Role::Player).collect();
@@ -139,17 +146,16 @@ fn compare(options: &Options) -> Result<(), Failure> {
     others.extend((options.join > 0).then_some(Role::Joiner));
     let mut parted: Option<(u64, Role)> = None;
     for role in others {
-        let theirs = stream(options, role)?;
-        let begin = theirs.keys().next().copied().unwrap_or(u64::MAX);
-        let whole = theirs.len() as u64 == (options.ticks + 1).saturating_sub(begin);
-        if !whole || (role != Role::Joiner && begin != 1) {
+        let (begin, theirs) = stream(options, role)?;
+        if begin == 0 || begin + theirs.len() as u64 != options.ticks + 1 || (role != Role::Joiner && begin != 1) {
             return Err(format!("{} does not have every tick", role.name()).into());
         }
-        match theirs.iter().find(|(tick, line)| first.get(tick) != Some(line)) {
+        let ours = &first[begin as usize - 1..];
+        match (begin..).zip(theirs.iter().zip(ours)).find(|(_, (theirs, ours))| theirs != ours) {
             None => println!("{}: ticks {begin} to {} are equal to player0's", role.name(), options.ticks),
             Some((tick, _)) => {
                 println!("{}: differs from player0 from tick {tick} on", role.name());
-                parted = parted.filter(|(earlier, _)| earlier <= tick).or(Some((*tick, role)));
+                parted = parted.filter(|(earlier, _)| *earlier <= tick).or(Some((tick, role)));
             }
         }
     }

@@ -194,7 +194,7 @@ impl<G: Game> Lockstep<G> {
                 }
             }
         }
-        self.settled = self.settled.max(self.tick_of(session.confirmed()).saturating_add(1)).min(self.world.tick());
+        self.settled = self.settled.max(self.tick_of(session.confirmed().saturating_add(1))).min(self.world.tick());
         Ok(self.world.tick() > before)
     }
 
