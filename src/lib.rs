@@ -15,7 +15,8 @@
 //! | `contact` | pairs, impulses that last, events |
 //! | `solver` | the contact rows, impacts |
 //! | `world` | the world, its step, its commands, its queries |
-//! | `snapshot` | save, load, hash, diff |
+//! | `snapshot` | save, load, hash, diff, frames |
+//! | `rollback` | the last ticks, to go back to |
 //! | [`replay`] | recording, playing, verifying |
 //! | [`hello`] | whether two peers compute the same, asked before a session |
 //! | `lockstep` | lockstep and rollback sessions over a network (feature `ggrs`) |
@@ -36,6 +37,7 @@ mod motion;
 mod narrow;
 pub mod num;
 pub mod replay;
+mod rollback;
 #[cfg(feature = "scene")]
 pub mod scene;
 mod shape;
@@ -51,8 +53,9 @@ pub use num::{
     Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Density, Energy, Force, Friction, Impulse, Inertia,
     Length, Mass, Mu, NumError, Radians, RangeError, Restitution, Time, Torque, Velocity,
 };
+pub use rollback::{Rollback, RollbackError};
 pub use shape::{ColliderDef, Filter, Shape, ShapeError};
-pub use snapshot::{HashPart, LAW, SAVE_VERSION};
+pub use snapshot::{Frame, FrameError, HashPart, LAW, SAVE_VERSION};
 pub use solver::{Impact, ImpactError, Striker, impact};
 pub use store::{AttractorId, BodyId, ColliderId, DecodeError, Difference};
 pub use world::{

@@ -3,10 +3,17 @@
 //! A save is a magic, the format version and the arithmetic law, the state by its field lists, and the state's hash;
 //! `replays/FORMAT.md` has all of it byte by byte.
 
-use crate::World;
-use crate::store::{DecodeError, Diff, Difference, Hasher, Reader, Record, put};
+mod frame;
+mod header;
+mod tables;
 
-const MAGIC: &[u8; 8] = b"TAMIAS-W";
+use crate::World;
+use crate::motion::Push;
+use crate::store::{DecodeError, Diff, Difference, Hasher, Record, put};
+use crate::world::Status;
+pub use frame::{Frame, FrameError};
+pub(crate) use tables::{Digests, Tables};
+
 /// The format version of saved worlds.
 pub const SAVE_VERSION: u32 = 4;
 /// The arithmetic law: what every number, rounding and order of operations is. Worlds of two laws continue
@@ -41,9 +48,7 @@ impl World {
     /// As [`World::save`], into a buffer that is cleared first and whose memory is reused.
     pub fn save_into(&self, bytes: &mut Vec<u8>) {
         bytes.clear();
-        bytes.extend_from_slice(MAGIC);
-        put(bytes, SAVE_VERSION);
-        put(bytes, LAW);
+        header::put(bytes, header::SAVE);
         Record::save(self, bytes);
         put(bytes, self.hash());
     }
@@ -52,18 +57,7 @@ impl World {
     ///
     /// Errors: everything but the exact bytes of a save, by place; the memory reserved is bounded by the bytes given.
     pub fn load(bytes: &[u8]) -> Result<World, DecodeError> {
-        let mut reader = Reader::new(bytes);
-        if reader.take_bytes(MAGIC.len(), "magic").ok() != Some(MAGIC) {
-            return Err(DecodeError::NotASave);
-        }
-        let found = reader.take("format version")?;
-        if found != SAVE_VERSION {
-            return Err(DecodeError::Version { found, known: SAVE_VERSION });
-        }
-        let found = reader.take("arithmetic law")?;
-        if found != LAW {
-            return Err(DecodeError::Law { found, known: LAW });
-        }
+        let mut reader = header::take(bytes, header::SAVE)?;
         let offset = reader.offset();
         let mut world: World = Record::load(&mut reader, "world")?;
         let saved = reader.take("hash")?;
@@ -86,41 +80,32 @@ impl World {
     /// Cost: one pass over the bodies' columns (48 bytes a body, 52 with sleeping); what only commands change is covered by digests
     /// that commands renew.
     pub fn hash(&self) -> u64 {
-        let mut hasher = Hasher::new();
-        for part in self.hash_parts() {
-            put(&mut hasher, part.hash);
-        }
-        hasher.finish()
+        root(&self.hash_parts())
     }
 
     /// The hash of each part of the state.
     pub fn hash_parts(&self) -> [HashPart; 9] {
-        let World { config, tick, bodies, colliders, attractors, pushes, contacts, resting, status, .. } = self;
-        let mut clock = Hasher::new();
-        config.save(&mut clock);
-        tick.save(&mut clock);
-        let record = |record: &Vec<_>| {
-            let mut hasher = Hasher::new();
-            record.save(&mut hasher);
-            hasher.finish()
+        let World { config: _, tick: _, bodies, colliders, attractors, pushes, contacts, resting, status, .. } = self;
+        let hashes = Hashes {
+            clock: self.clock_hash(),
+            bodies: bodies.cold.hash(),
+            motion: bodies.motion_hash(),
+            colliders: colliders.hash(),
+            attractors: attractors.hash(),
+            pushes,
+            contacts: contacts.hash(),
+            sleep: [bodies.rest.hash(), resting.hash()],
+            status,
         };
-        let mut faults = Hasher::new();
-        status.save(&mut faults);
-        let mut sleep = Hasher::new();
-        put(&mut sleep, bodies.rest.hash());
-        put(&mut sleep, resting.hash());
-        let part = |name, hash| HashPart { name, hash };
-        [
-            part("configuration", clock.finish()),
-            part("bodies", bodies.cold.hash()),
-            part("motion", bodies.motion_hash()),
-            part("colliders", colliders.hash()),
-            part("attractors", attractors.hash()),
-            part("forces", record(pushes)),
-            part("contacts", contacts.hash()),
-            part("sleep", sleep.finish()),
-            part("status", faults.finish()),
-        ]
+        hashes.parts()
+    }
+
+    /// The hash of the configuration with the tick.
+    fn clock_hash(&self) -> u64 {
+        let mut hasher = Hasher::new();
+        self.config.save(&mut hasher);
+        self.tick.save(&mut hasher);
+        hasher.finish()
     }
 
     /// Where two worlds differ, field by field, in the order of the state; empty when they are equal.
@@ -139,4 +124,50 @@ impl World {
         Record::diff(self, other, &mut diff);
         diff.found
     }
+}
+
+/// What the hash of a state is made of, wherever that lies.
+struct Hashes<'s> {
+    clock: u64,
+    bodies: u64,
+    motion: u64,
+    colliders: u64,
+    attractors: u64,
+    pushes: &'s Vec<Push>,
+    contacts: u64,
+    /// Who sleeps, and the contacts of what does.
+    sleep: [u64; 2],
+    status: &'s Status,
+}
+
+impl Hashes<'_> {
+    fn parts(&self) -> [HashPart; 9] {
+        let Hashes { clock, bodies, motion, colliders, attractors, pushes, contacts, sleep, status } = self;
+        let of = |record: &dyn Fn(&mut Hasher)| {
+            let mut hasher = Hasher::new();
+            record(&mut hasher);
+            hasher.finish()
+        };
+        let part = |name, hash| HashPart { name, hash };
+        [
+            part("configuration", *clock),
+            part("bodies", *bodies),
+            part("motion", *motion),
+            part("colliders", *colliders),
+            part("attractors", *attractors),
+            part("forces", of(&|hasher| pushes.save(hasher))),
+            part("contacts", *contacts),
+            part("sleep", of(&|hasher| sleep.iter().for_each(|hash| put(hasher, *hash)))),
+            part("status", of(&|hasher| status.save(hasher))),
+        ]
+    }
+}
+
+/// The hash over those of all parts.
+fn root(parts: &[HashPart; 9]) -> u64 {
+    let mut hasher = Hasher::new();
+    for part in parts {
+        put(&mut hasher, part.hash);
+    }
+    hasher.finish()
 }

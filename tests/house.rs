@@ -17,6 +17,7 @@ const FLOORS: [&[&str]; 12] = [
     &["solver"],
     &["world"],
     &["snapshot"],
+    &["rollback"],
     &["replay"],
     &["scene", "guide", "hello"],
     &["lockstep"],

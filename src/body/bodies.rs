@@ -5,9 +5,9 @@ use super::def::{BodyData, BodyDef};
 use super::rest::Rest;
 use crate::geom::Vec2;
 use crate::num::{Angle, AngularVelocity, Length, Quantity, Velocity};
-use crate::store::{Arena, BodyId, Column, DecodeError, Diff, Hasher, Reader, Record, Sink};
+use crate::store::{Arena, BodyId, Column, DecodeError, Diff, Hasher, Reader, Record, Sink, record};
 
-/// Declares the table from one list of columns: struct, save, load, hash, diff and copy.
+/// Declares the table from one list of columns: struct, save, load, hash, diff and copy, and what of it a tick changes.
 macro_rules! table {
     ($($(#[$doc:meta])* $column:ident: $quantity:ty, $path:literal;)*) => {
         /// All bodies. A column has one element per slot, zero where the slot is free.
@@ -37,6 +37,45 @@ macro_rules! table {
             /// Whether every slot has its element in each column.
             fn is_rectangular(&self) -> bool {
                 true $( && self.$column.len() == self.cold.len() )*
+            }
+        }
+
+        /// The columns apart from their table: where bodies were.
+        #[derive(Debug, Default)]
+        pub(crate) struct Motion {
+            $( $column: Column<$quantity>, )*
+        }
+
+        record!(Motion { $($column),* });
+
+        impl Motion {
+            /// As [`Bodies::motion_hash`].
+            pub(crate) fn hash(&self) -> u64 {
+                let Motion { $($column),* } = self;
+                let mut hasher = Hasher::new();
+                $( $column.hash().save(&mut hasher); )*
+                hasher.finish()
+            }
+
+            /// Copies the columns of a table.
+            pub(crate) fn copy_from(&mut self, bodies: &Bodies) {
+                let Bodies { cold: _, rest: _, $($column),* } = bodies;
+                $( self.$column.clone_from($column); )*
+            }
+
+            /// Copies them back.
+            pub(crate) fn copy_to(&self, bodies: &mut Bodies) {
+                let Motion { $($column),* } = self;
+                $( bodies.$column.clone_from($column); )*
+            }
+
+            /// Whether a body was at another place than now, or turned otherwise.
+            #[inline]
+            pub(crate) fn is_elsewhere(&self, slot: usize, bodies: &Bodies) -> bool {
+                let differs = |was: &[i64], is: &[i64]| was.get(slot) != is.get(slot);
+                differs(self.x.bits(), bodies.x.bits())
+                    || differs(self.y.bits(), bodies.y.bits())
+                    || differs(self.angle.bits(), bodies.angle.bits())
             }
         }
 
@@ -161,7 +200,7 @@ impl Bodies {
     }
 
     /// Whether columns are as long as the slots and values fit their bodies; what is wrong, if not.
-    fn check_values(&self) -> Result<(), &'static str> {
+    pub(crate) fn check_values(&self) -> Result<(), &'static str> {
         if !self.is_rectangular() || ![0, self.cold.len()].contains(&self.rest.len()) {
             return Err("has columns that are not as long as its slots");
         }

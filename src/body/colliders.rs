@@ -160,6 +160,32 @@ impl Colliders {
         hasher.finish()
     }
 
+    /// Makes the table another one. `changed` gets the slot of each collider that was or is another one by this, has
+    /// another form, or is only in one of both, and whether it is there now.
+    pub(crate) fn turn_into(&mut self, other: &Colliders, mut changed: impl FnMut(usize, Option<&Collider>)) {
+        let live = |table: &Colliders, slot: usize| table.rows.generation(slot).is_some();
+        let mut reformed = false;
+        for form in self.forms.differing(&other.forms) {
+            let same = form < self.forms.len().min(other.forms.len()) && {
+                let (a, b) = (self.forms.value(form), other.forms.value(form));
+                a.same(b) && (a.uses > 0) == (b.uses > 0)
+            };
+            reformed |= !same;
+        }
+        for slot in self.rows.differing(&other.rows) {
+            changed(slot, live(other, slot).then(|| other.rows.value(slot)));
+        }
+        if reformed {
+            // A form that has changed is seldom: then all of them are looked at.
+            for (slot, row) in other.rows.iter() {
+                if live(self, slot) && self.outline(slot) != other.outline(slot) {
+                    changed(slot, Some(row));
+                }
+            }
+        }
+        self.clone_from(other);
+    }
+
     /// Whether so many more fit.
     pub(crate) fn has_room(&self, count: usize) -> bool {
         let limit = Arena::<Collider>::LIMIT as usize;

@@ -71,7 +71,7 @@ clone_fields!(Rest { ticks, on, sleepers, runs, stale });
 impl Rest {
     /// Derives what is derived, for as many slots.
     pub(crate) fn derive(&mut self, on: bool, slots: usize) {
-        self.on = on;
+        (self.on, self.stale) = (on, on);
         self.sleepers = self.ticks.iter().filter(|&&ticks| ticks == ASLEEP).count() as u32;
         self.grow(slots);
         self.settle();
@@ -80,8 +80,8 @@ impl Rest {
     /// Room for as many slots.
     pub(super) fn grow(&mut self, slots: usize) {
         if self.on {
+            self.stale |= self.ticks.len() != slots;
             self.ticks.resize(slots, 0);
-            self.stale = true;
         } else {
             self.runs.clear();
             self.runs.push([0, slots as u32]);
@@ -172,6 +172,35 @@ impl Rest {
         asleep
     }
 
+    /// What these numbers say; what follows from them is to be derived.
+    pub(crate) fn of(numbers: &[u32]) -> Rest {
+        Rest { ticks: numbers.to_vec(), ..Rest::default() }
+    }
+
+    /// The numbers: for how many ticks each body has been quiet, or that it sleeps.
+    pub(crate) fn numbers(&self) -> &[u32] {
+        &self.ticks
+    }
+
+    /// Puts numbers back, those of as many slots as there are now. Who sleeps and did not, or the other way round, is added
+    /// to `turned`.
+    pub(crate) fn revert(&mut self, numbers: &[u32], on: bool, slots: usize, turned: &mut Vec<u32>) {
+        (self.on, self.stale) = (on, on && (self.stale || !self.on));
+        if self.ticks != numbers {
+            let (known, asleep) = (turned.len(), |ticks: Option<&u32>| ticks == Some(&ASLEEP));
+            for slot in 0..self.ticks.len().max(numbers.len()) {
+                if asleep(self.ticks.get(slot)) != asleep(numbers.get(slot)) {
+                    turned.push(slot as u32);
+                }
+            }
+            self.stale |= self.on && (turned.len() > known || self.ticks.len() != numbers.len());
+            self.ticks.clear();
+            self.ticks.extend_from_slice(numbers);
+            self.sleepers = self.ticks.iter().filter(|&&ticks| ticks == ASLEEP).count() as u32;
+        }
+        self.grow(slots);
+    }
+
     /// XXH3-64 of the numbers' little-endian bytes.
     pub(crate) fn hash(&self) -> u64 {
         crate::store::hash_numbers(&self.ticks)
@@ -210,7 +239,7 @@ impl Record for Rest {
         for _ in 0..count {
             ticks.push(u32::load(reader, field)?);
         }
-        Ok(Rest { ticks, ..Rest::default() })
+        Ok(Rest::of(&ticks))
     }
 
     fn diff(&self, _: &Self, _: &mut crate::store::Diff) {

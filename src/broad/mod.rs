@@ -114,6 +114,11 @@ impl Broad {
         self.moving.set(proxy, &local);
     }
 
+    /// The proxies that do not move by themselves.
+    pub(crate) fn fixed(&self) -> impl Iterator<Item = usize> + '_ {
+        self.states.iter().enumerate().filter(|(_, state)| **state & KIND == FIXED).map(|(slot, _)| slot)
+    }
+
     /// Removes a proxy, if it is there.
     pub(crate) fn remove(&mut self, proxy: u32) {
         if (proxy as usize) < self.states.len() {

@@ -142,6 +142,12 @@ impl Touch {
         self.seen.resize(slots, 0);
     }
 
+    /// Adds to `found` the bodies of those colliders for which the broad phase has a fixed box, and which are `elsewhere`.
+    pub(crate) fn find_displaced(&self, elsewhere: impl Fn(usize) -> bool, found: &mut Vec<u32>) {
+        let bodies = self.broad.fixed().map(|slot| self.proxies[slot].body);
+        found.extend(bodies.filter(|&body| elsewhere(body as usize)));
+    }
+
     pub(crate) fn remove(&mut self, slot: usize) {
         self.broad.remove(slot as u32);
     }

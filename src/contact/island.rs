@@ -182,6 +182,28 @@ impl Resting {
         }
     }
 
+    /// Whether contacts may be on the wrong list.
+    pub(crate) fn is_stirred(&self) -> bool {
+        self.stale
+    }
+
+    /// Puts back the contacts that have this hash, after bodies and the contacts of what is awake were put back. `same`:
+    /// whether the same bodies sleep as before, and have the same colliders; `stirred`: what [`Resting::is_stirred`] was.
+    pub(crate) fn revert(
+        &mut self,
+        (contacts, hash): (&Contacts, u64),
+        (same, stirred): (bool, bool),
+        awake: &Contacts,
+        bodies: &Bodies,
+        colliders: &Colliders,
+    ) {
+        if !same || hash != self.hash || contacts.len() != self.contacts.len() {
+            self.contacts.clone_from(contacts);
+            self.derive(awake, bodies, colliders);
+        }
+        self.stale = stirred;
+    }
+
     /// Notes that contacts may be on the wrong list.
     pub(crate) fn stir(&mut self) {
         self.stale = true;

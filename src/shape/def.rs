@@ -7,7 +7,7 @@ use core::fmt;
 use serde::{Deserialize, Serialize};
 
 /// A convex form.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Shape {
     /// A disc about the collider's origin: in the words of the SRS, a vertex with a radius.
     Circle {
@@ -28,6 +28,24 @@ pub enum Shape {
         /// Its vertices.
         vertices: Vec<Vec2<Length>>,
     },
+}
+
+impl Clone for Shape {
+    fn clone(&self) -> Self {
+        match self {
+            Shape::Circle { radius } => Shape::Circle { radius: *radius },
+            Shape::Box { width, height } => Shape::Box { width: *width, height: *height },
+            Shape::Polygon { vertices } => Shape::Polygon { vertices: vertices.clone() },
+        }
+    }
+
+    /// Reuses the memory of vertices, as the derived one does not.
+    fn clone_from(&mut self, source: &Self) {
+        match (self, source) {
+            (Shape::Polygon { vertices }, Shape::Polygon { vertices: others }) => vertices.clone_from(others),
+            (shape, source) => *shape = source.clone(),
+        }
+    }
 }
 
 record_enum!(Shape { 0 => Circle { radius }, 1 => Box { width, height }, 2 => Polygon { vertices } });

@@ -304,6 +304,11 @@ impl Solver {
         self.movers.shifted(mul(speed, self.scales.margins.tick, 79), &self.scales)
     }
 
+    /// Forgets the collisions of the tick.
+    pub(crate) fn forget_collisions(&mut self) {
+        self.timeline.collisions.clear();
+    }
+
     /// The collisions of the tick.
     pub(crate) fn collisions(&self) -> &[Collision] {
         &self.timeline.collisions

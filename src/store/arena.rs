@@ -65,7 +65,7 @@ const END: u32 = u32::MAX - 1;
 pub(crate) trait Row: Record + Clone + Default + PartialEq {}
 
 /// A slot: its generation, its place in the chain of free slots (or that it is in use), and its value.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 struct Slot<T> {
     generation: u32,
     link: u32,
@@ -241,6 +241,13 @@ impl<T: Row> Arena<T> {
     /// The slots in use with their values, in slot order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (usize, &T)> {
         self.slots.iter().enumerate().filter(|(_, slot)| slot.link == LIVE).map(|(at, slot)| (at, &slot.value))
+    }
+
+    /// The slots that another arena does not have so, in order; those that only one of both has too.
+    pub(crate) fn differing<'a>(&'a self, other: &'a Self) -> impl Iterator<Item = usize> + 'a {
+        let same = self.digest == other.digest && self.slots.len() == other.slots.len();
+        let slots = if same { 0 } else { self.slots.len().max(other.slots.len()) };
+        (0..slots).filter(|&slot| self.slots.get(slot) != other.slots.get(slot))
     }
 
     /// The hash of everything in the arena, at the cost of one small hash.

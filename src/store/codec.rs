@@ -137,6 +137,8 @@ pub enum DecodeError {
     },
     /// The first bytes are not those of a save.
     NotASave,
+    /// The first bytes are not those of a frame.
+    NotAFrame,
     /// A save of another format version.
     Version {
         /// The version found.
@@ -167,6 +169,7 @@ impl fmt::Display for DecodeError {
             DecodeError::Invalid { offset, field, reason } => write!(f, "{field} at byte {offset} {reason}"),
             DecodeError::Trailing { offset } => write!(f, "unexpected bytes after the end at byte {offset}"),
             DecodeError::NotASave => f.write_str("not a saved tamias2d world"),
+            DecodeError::NotAFrame => f.write_str("not a frame of a tamias2d world"),
             DecodeError::Version { found, known } => {
                 write!(f, "saved in format version {found}, this build reads version {known}")
             }
