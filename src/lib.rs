@@ -60,5 +60,5 @@ pub use solver::{Impact, ImpactError, Striker, impact};
 pub use store::{AttractorId, BodyId, ColliderId, DecodeError, Difference};
 pub use world::{
     Body, Bound, ClosestPoint, Collider, Command, CommandError, Commands, ConfigError, INPUT_MAX, Integrator, RayHit,
-    Reply, Sleeping, Status, StatusEntry, World, WorldDef,
+    Reply, Sleeping, Stage, Status, StatusEntry, World, WorldDef,
 };

@@ -36,6 +36,8 @@ loses, doubles, delays and reorders packets. The confirmed states of all are com
 --join TICK       one more process joins when the match has come so far, by a snapshot
 --seed N          of the network and of what the players do (1)
 --fault P:TICK    in player P's memory one bit of the world flips at about that tick
+--evidence        the players keep evidence of the last ticks: after an alarm it says which field of what differs, and since
+                  which stage of which tick
 --other-law P     player P says that he computes by another arithmetic law
 --other-scene P   player P loads another room
 --out DIR         keep the hashes, recordings and evidence there
@@ -54,6 +56,7 @@ pub struct Options {
     join: u64,
     seed: u64,
     fault: Option<(usize, u64)>,
+    evidence: bool,
     other_law: Option<usize>,
     other_scene: Option<usize>,
     out: PathBuf,
@@ -81,6 +84,7 @@ fn parse(arguments: &[String]) -> Result<Options, String> {
         join: 0,
         seed: 1,
         fault: None,
+        evidence: false,
         other_law: None,
         other_scene: None,
         out: std::env::temp_dir().join(format!("tamias2d-p2p-{}", std::process::id())),
@@ -89,8 +93,12 @@ fn parse(arguments: &[String]) -> Result<Options, String> {
     };
     let mut words = arguments.iter();
     while let Some(word) = words.next() {
-        if word == "--spectator" {
-            options.spectator = true;
+        match word.as_str() {
+            "--spectator" => options.spectator = true,
+            "--evidence" => options.evidence = true,
+            _ => {}
+        }
+        if matches!(word.as_str(), "--spectator" | "--evidence") {
             continue;
         }
         let value = words.next().ok_or_else(|| format!("{word} is unknown or lacks its value"))?;

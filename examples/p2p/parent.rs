@@ -3,11 +3,10 @@
 use crate::Options;
 use crate::peer::Role;
 use std::io::{BufRead, BufReader, Write};
-use std::path::Path;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Instant;
-use tamias2d::World;
+use tamias2d::replay::Evidence;
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -160,18 +159,23 @@ fn compare(options: &Options) -> Result<(), Failure> {
         }
     }
     let Some((tick, role)) = parted else { return Ok(()) };
-    explain(&options.out, tick, role)?;
+    explain(options, tick, role)?;
     Err(format!("the worlds part at tick {tick}").into())
 }
 
-/// What differs, field by field, at the first tick that does.
-fn explain(out: &Path, tick: u64, role: Role) -> Result<(), Failure> {
-    let read = |role: Role| -> Result<World, Failure> {
-        Ok(World::load(&std::fs::read(out.join(format!("{}.{tick}.world", role.name())))?)?)
-    };
-    let (ours, theirs) = (read(Role::Player(0))?, read(role)?);
-    for difference in ours.diff(&theirs).iter().take(8) {
-        println!("tick {tick}, player0 and {}: {difference}", role.name());
+/// What differs, field by field, at the first tick that does. What changed between two ticks shows when the second begins.
+fn explain(options: &Options, tick: u64, role: Role) -> Result<(), Failure> {
+    for tick in [tick, tick + 1] {
+        let read = |role: Role| std::fs::read(options.out.join(format!("{}.{tick}.evidence", role.name())));
+        let (Ok(ours), Ok(theirs)) = (read(Role::Player(0)), read(role)) else { continue };
+        let (ours, theirs) = (Evidence::decode(&ours)?, Evidence::decode(&theirs)?);
+        let Some(divergence) = ours.first_difference(&theirs)? else { continue };
+        println!("evidence of player0 (A) and {} (B): tick {tick}, {}", role.name(), divergence.stage);
+        for finding in divergence.findings.iter().take(8) {
+            println!("  {finding}");
+        }
+        return Ok(());
     }
+    println!("there is no evidence of tick {tick}: --evidence keeps it");
     Ok(())
 }

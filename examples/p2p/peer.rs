@@ -162,12 +162,14 @@ fn play(options: &Options, number: usize) -> Result<(), Failure> {
 
     let mut recorder = Recorder::new(world.clone(), BufWriter::new(File::create(file(options, role, "replay"))?))?;
     let mut lockstep = Lockstep::new(arena, world)?;
-    lockstep.keep_ticks(64)?;
+    if options.evidence {
+        lockstep.keep_evidence(64);
+    }
     let tally = socket.tally.clone();
     let mut session = session(options, number, &ports, socket)?;
     let mut bot = Bot { dice: Dice(options.seed.wrapping_add(number as u64 * 104_729 + 1) << 8 | 1), buttons: 0 };
     let (mut stream, mut frame, mut late) = (Stream::create(options, role)?, -1, None);
-    let (mut fault, mut alarmed, mut waits) = (Fault::new(options, number), false, 0u64);
+    let (mut fault, mut alarm, mut waits) = (Fault::new(options, number), None, 0u64);
     while stream.last < options.ticks {
         if over.load(Ordering::Relaxed) {
             return Err("the match was ended from outside".into());
@@ -194,12 +196,17 @@ fn play(options: &Options, number: usize) -> Result<(), Failure> {
         fault.strike(&mut lockstep);
         for event in session.events() {
             if let GgrsEvent::DesyncDetected { frame, local_checksum, remote_checksum, addr } = event {
-                if !alarmed {
-                    alarmed = true;
-                    println!("alarm, by {addr}: {}", lockstep.alarm(frame, local_checksum, remote_checksum));
-                    keep_evidence(options, role, &lockstep)?;
+                let told = lockstep.alarm(frame, local_checksum, remote_checksum);
+                if alarm.is_none() {
+                    println!("alarm, by {addr}: {told}");
+                    alarm = Some(told.tick);
                 }
             }
+        }
+        // A few ticks later, so that the ticks about the alarm are not predictions any more.
+        if alarm.is_some_and(|tick| lockstep.settled() >= tick.saturating_add(4)) {
+            alarm = Some(u64::MAX);
+            keep_evidence(options, role, &lockstep)?;
         }
         pace(&session, ports.spectator.filter(|_| number == 0).map(|_| ports.players.len()));
     }
@@ -264,11 +271,11 @@ impl Fault {
     }
 }
 
-/// What is kept of the last ticks, for comparing with another peer's.
+/// Writes the evidence of the last ticks, for comparing with another peer's.
 fn keep_evidence(options: &Options, role: Role, lockstep: &Lockstep<Arena>) -> Result<(), Failure> {
-    for tick in lockstep.settled().saturating_sub(48)..=lockstep.settled() {
-        if let Some(world) = lockstep.world_at(tick) {
-            std::fs::write(file(options, role, &format!("{tick}.world")), world.save())?;
+    for tick in lockstep.settled().saturating_sub(24)..=lockstep.settled() {
+        if let Some(evidence) = lockstep.evidence(tick) {
+            std::fs::write(file(options, role, &format!("{tick}.evidence")), evidence.encode())?;
         }
     }
     Ok(())

@@ -17,7 +17,7 @@ pub struct Attractor {
     pub mu: Mu,
 }
 
-record_copy!(Attractor { position, mu });
+record_copy!(Attractor { position, mu } shown);
 
 impl Row for Attractor {}
 

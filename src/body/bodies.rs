@@ -5,7 +5,9 @@ use super::def::{BodyData, BodyDef};
 use super::rest::Rest;
 use crate::geom::Vec2;
 use crate::num::{Angle, AngularVelocity, Length, Quantity, Velocity};
-use crate::store::{Arena, BodyId, Column, DecodeError, Diff, Hasher, Reader, Record, Sink, record};
+use crate::store::{
+    Arena, BodyId, Cells, Column, DecodeError, Diff, Draft, Hasher, Kind, Reader, Record, Show, Sink, Tables, record,
+};
 
 /// Declares the table from one list of columns: struct, save, load, hash, diff and copy, and what of it a tick changes.
 macro_rules! table {
@@ -136,7 +138,34 @@ table! {
     omega: AngularVelocity, "angular_velocity";
 }
 
+/// Where a body is and how it moves, as the columns have it. Speeds stand first: they change places, not the other way round.
+struct Moving<'b>(&'b Bodies, usize);
+
+impl Show for Moving<'_> {
+    fn show(&self, cells: &mut Cells<'_>) {
+        let Moving(Bodies { cold: _, rest: _, x, y, vx, vy, angle, omega }, slot) = *self;
+        cells.field("velocity.x", |c| vx.get(slot).show(c));
+        cells.field("velocity.y", |c| vy.get(slot).show(c));
+        cells.field("angular_velocity", |c| omega.get(slot).show(c));
+        cells.field("position.x", |c| x.get(slot).show(c));
+        cells.field("position.y", |c| y.get(slot).show(c));
+        cells.field("angle", |c| angle.get(slot).show(c));
+    }
+}
+
 impl Bodies {
+    /// Hands on all of it as tables; `sorted`: whether a tick has sorted out who is awake.
+    pub(crate) fn show(&self, sorted: bool, draft: &mut Draft, tables: &mut impl Tables) {
+        self.cold.show(draft, tables, ["bodies", "slots of bodies"], Kind::Body);
+        self.show_motion(draft, tables);
+        self.rest.show(sorted, draft, tables);
+    }
+
+    /// Hands on the columns as a table.
+    pub(crate) fn show_motion(&self, draft: &mut Draft, tables: &mut impl Tables) {
+        draft.table(tables, "motion", Kind::Body, (0..self.cold.len()).map(|slot| Moving(self, slot)));
+    }
+
     /// Adds a body with the row that its definition gives. The caller has checked that the arena has room.
     pub(crate) fn insert(&mut self, def: &BodyDef, data: BodyData) -> BodyId {
         let center = center_at(def.position, data.center, def.angle);

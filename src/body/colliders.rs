@@ -3,7 +3,9 @@
 use crate::geom::{Rot, Vec2};
 use crate::num::{Angle, Density, Friction, Length, Restitution};
 use crate::shape::{ColliderDef, Filter, Outline, Shape};
-use crate::store::{Arena, ColliderId, DecodeError, Diff, Hasher, Reader, Record, Row, Sink, put, record};
+use crate::store::{
+    Arena, ColliderId, DecodeError, Diff, Draft, Hasher, Kind, Reader, Record, Row, Sink, Tables, put, record,
+};
 
 /// A form in a body's axes about its centre of mass: what colliders share instead of each having its own.
 #[derive(Debug, PartialEq)]
@@ -17,7 +19,7 @@ pub(crate) struct Form {
     uses: u32,
 }
 
-record!(Form { shape, offset, angle, center, uses });
+record!(Form { shape, offset, angle, center, uses } shown);
 
 impl Default for Form {
     fn default() -> Self {
@@ -55,7 +57,7 @@ pub(crate) struct Collider {
     pub(crate) sensor: bool,
 }
 
-record!(Collider { body, next, form, density, restitution, friction, filter, sensor });
+record!(Collider { body, next, form, density, restitution, friction, filter, sensor } shown);
 
 impl Row for Collider {}
 
@@ -150,6 +152,22 @@ impl Colliders {
                 self.outlines[form] = Outline::default();
             }
         }
+    }
+
+    /// Hands on all of it as tables.
+    pub(crate) fn show(&self, draft: &mut Draft, tables: &mut impl Tables) {
+        self.rows.show(draft, tables, ["colliders", "slots of colliders"], Kind::Collider);
+        self.forms.show(draft, tables, ["forms", "slots of forms"], Kind::Form);
+        draft.table(tables, "outlines", Kind::Form, self.outlines.iter());
+        draft.table(tables, "order of forms", Kind::List, self.sorted.iter());
+    }
+
+    /// As [`Colliders::hash`], of what memory holds, without digests that were kept.
+    pub(crate) fn hash_afresh(&self) -> u64 {
+        let mut hasher = Hasher::new();
+        put(&mut hasher, self.rows.hash_afresh());
+        put(&mut hasher, self.forms.hash_afresh());
+        hasher.finish()
     }
 
     /// The hash of everything in the table, at the cost of one small hash.

@@ -23,7 +23,7 @@ pub enum BodyKind {
     Dynamic,
 }
 
-record_enum!(BodyKind { 0 => Static {}, 1 => Kinematic {}, 2 => Dynamic {} });
+record_enum!(BodyKind { 0 => Static {}, 1 => Kinematic {}, 2 => Dynamic {} } shown);
 
 /// A body to create. `BodyDef::default()` is a dynamic body at rest at the origin, without colliders.
 #[derive(Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -219,7 +219,7 @@ record!(BodyData {
     mu,
     user_data,
     allow_sleep,
-});
+} shown);
 
 impl Row for BodyData {}
 

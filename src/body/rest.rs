@@ -2,7 +2,9 @@
 
 use super::bodies::Bodies;
 use crate::num::{Decimal, Quantity, RangeError, Time, Velocity, div, mul};
-use crate::store::{DecodeError, Reader, Record, Sink, clone_fields, put_count, record_copy};
+use crate::store::{
+    DecodeError, Draft, Kind, Reader, Record, Sink, Tables, clone_fields, put_count, record_copy, show,
+};
 use core::ops::Range;
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +20,7 @@ pub struct Sleeping {
     pub time: Time,
 }
 
-record_copy!(Sleeping { speed, time });
+record_copy!(Sleeping { speed, time } shown);
 
 impl Default for Sleeping {
     fn default() -> Self {
@@ -170,6 +172,23 @@ impl Rest {
             *ticks = 0;
         }
         asleep
+    }
+
+    /// Hands on who sleeps as tables. `sorted`: whether the runs are what a tick reads.
+    pub(super) fn show(&self, sorted: bool, draft: &mut Draft, tables: &mut impl Tables) {
+        struct Quiet {
+            ticks: u32,
+        }
+        show!(Quiet { ticks });
+        struct Sleepers {
+            count: u32,
+        }
+        show!(Sleepers { count });
+        draft.table(tables, "quiet", Kind::Body, self.ticks.iter().map(|&ticks| Quiet { ticks }));
+        draft.table(tables, "sleepers", Kind::World, core::iter::once(Sleepers { count: self.sleepers }));
+        if sorted {
+            draft.table(tables, "runs of slots awake", Kind::List, self.runs.iter());
+        }
     }
 
     /// What these numbers say; what follows from them is to be derived.

@@ -14,6 +14,7 @@ use crate::motion::Drive;
 use crate::narrow::{Manifold, near, overlap};
 use crate::num::{Length, cross, dot, mul};
 use crate::shape::Placed;
+use crate::store::{Draft, Kind, Tables};
 
 /// How far ahead contacts are looked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,6 +24,8 @@ pub(crate) struct Margins {
     /// The tick in seconds, 63 fraction bits.
     pub(crate) tick: i64,
 }
+
+crate::store::show!(Margins { base, tick });
 
 /// No contact of the last tick.
 pub(crate) const NEW: u32 = u32::MAX;
@@ -50,6 +53,8 @@ pub(crate) struct Pair {
     pub(crate) restitution: i64,
     pub(crate) friction: i64,
 }
+
+crate::store::show!(Pair { colliders, bodies, sensor, manifold, old, row, depth, met, restitution, friction });
 
 impl Pair {
     pub(crate) fn new(slots: [u32; 2], bodies: [u32; 2], manifold: Manifold, colliders: &Colliders) -> Pair {
@@ -114,6 +119,11 @@ impl Touch {
     pub(crate) fn clear(&mut self) {
         self.broad.clear();
         self.pairs.clear();
+    }
+
+    /// Hands on the pairs as a table.
+    pub(crate) fn show(&self, draft: &mut Draft, tables: &mut impl Tables) {
+        draft.table(tables, "pairs", Kind::Pair, self.pairs.iter());
     }
 
     /// Puts a collider where its body is now; after it was created, teleported, or changed its kind or filter.

@@ -7,7 +7,7 @@
 use super::row::{Contact, Contacts};
 use crate::body::{Bodies, BodyKind, Colliders};
 use crate::num::AngularVelocity;
-use crate::store::{DecodeError, Diff, Reader, Record, Sink, clone_fields};
+use crate::store::{DecodeError, Diff, Draft, Kind, Reader, Record, Sink, Tables, clone_fields, show};
 use core::ops::Range;
 
 /// Whether a pair of colliders is left as it is: one of its bodies sleeps, and the other does as well or stays. A kinematic
@@ -292,6 +292,16 @@ impl Resting {
             }
         }
         found.extend(awake().map(|slot| slot as u32).filter(|&slot| !up[sets.root(slot) as usize]));
+    }
+
+    /// Hands on what sleeps as tables.
+    pub(crate) fn show(&self, draft: &mut Draft, tables: &mut impl Tables) {
+        struct Known {
+            hash: u64,
+        }
+        show!(Known { hash });
+        self.contacts.show(draft, tables, "sleeping contacts");
+        draft.table(tables, "hash of sleeping contacts", Kind::World, core::iter::once(Known { hash: self.hash }));
     }
 
     /// The hash of all of it.

@@ -1,6 +1,6 @@
 //! What of a contact is state: that it touches, and the impulses with which the next tick begins.
 
-use crate::store::{ColliderId, DecodeError, Diff, Reader, Record, Sink, hash_words};
+use crate::store::{Cells, ColliderId, DecodeError, Diff, Draft, Kind, Reader, Record, Show, Sink, Tables, hash_words};
 
 /// A pair of colliders that has contact points, or a sensor and what overlaps it.
 ///
@@ -27,6 +27,27 @@ pub(crate) struct Contact {
     pub(crate) normal: [i64; 2],
     /// The impulse along the tangent, which is the normal turned counter-clockwise.
     pub(crate) tangent: i64,
+}
+
+impl Show for Contact {
+    fn show(&self, cells: &mut Cells<'_>) {
+        let Contact { a, b, touching, sensor, mode, count, ids, normal, tangent } = self;
+        cells.field("a", |c| a.show(c));
+        cells.field("b", |c| b.show(c));
+        cells.field("touching", |c| touching.show(c));
+        cells.field("sensor", |c| sensor.show(c));
+        cells.field("mode", |c| mode.show(c));
+        cells.field("count", |c| count.show(c));
+        for (i, (id, normal)) in ids.iter().zip(normal).enumerate() {
+            cells.field("points", |c| {
+                c.element(i, |c| {
+                    c.field("id", |c| id.show(c));
+                    c.field("normal", |c| c.fixed(*normal, 48, "m/s"));
+                });
+            });
+        }
+        cells.field("tangent", |c| c.fixed(*tangent, 48, "m/s"));
+    }
 }
 
 const WORDS: usize = 6;
@@ -128,6 +149,11 @@ impl Contacts {
     pub(crate) fn push(&mut self, contact: &Contact) {
         debug_assert_eq!(contact.check(), Ok(()));
         self.rows.push(contact.pack());
+    }
+
+    /// Hands on a table of them.
+    pub(crate) fn show(&self, draft: &mut Draft, tables: &mut impl Tables, name: &'static str) {
+        draft.table(tables, name, Kind::Contact, self.iter());
     }
 
     /// XXH3-64 of the rows' little-endian bytes.

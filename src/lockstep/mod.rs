@@ -18,6 +18,7 @@ pub use error::{Alarm, LockstepError};
 pub use session::{Net, Session};
 
 use crate::World;
+use crate::replay::{Evidence, Flight};
 use crate::store::{hash_bytes, write_value};
 use crate::world::{Command, CommandError, Commands, Reply};
 use ggrs::{Frame, GgrsError, GgrsRequest, InputStatus};
@@ -99,6 +100,8 @@ pub struct Lockstep<G: Game> {
     /// The world's tick at the session's frame 0.
     begin: u64,
     ring: Ring,
+    /// Steps the world; empty unless evidence is wanted.
+    flight: Flight,
     /// The ticks since the last one that was handed out as confirmed.
     moments: VecDeque<Moment<G::Input>>,
     /// Moments to be used again, the one handed out last at the end.
@@ -122,6 +125,7 @@ impl<G: Game> Lockstep<G> {
             world,
             begin: tick,
             ring: Ring::new(KEPT),
+            flight: Flight::default(),
             moments: VecDeque::new(),
             spare: Vec::new(),
             settled: tick,
@@ -137,6 +141,18 @@ impl<G: Game> Lockstep<G> {
     pub fn keep_ticks(&mut self, ticks: u32) -> Result<(), LockstepError> {
         self.ring = Ring::new(ticks.max(2));
         self.keep().map(drop)
+    }
+
+    /// From now on keeps evidence of the last `ticks` ticks: what memory held before each, after each stage of it, and after it.
+    /// It costs about as much as the steps themselves, so it is for games that are being tested, or that suspect a desync.
+    pub fn keep_evidence(&mut self, ticks: u32) {
+        self.flight = Flight::new(ticks);
+    }
+
+    /// The evidence of a tick, if it is kept: of the step that led to it. When an alarm rings, that of two peers says where they part
+    /// ([`Evidence::first_difference`]). What happened between two steps shows at the beginning of the second.
+    pub fn evidence(&self, tick: u64) -> Option<&Evidence> {
+        self.flight.evidence(tick)
     }
 
     /// The game as it is now, predictions included: what is drawn.
@@ -256,7 +272,7 @@ impl<G: Game> Lockstep<G> {
         moment.commands.clear();
         moment.inputs.extend(inputs);
         self.game.act(&moment.inputs, &mut Turn { world: &mut self.world, log: &mut moment.commands });
-        self.world.step();
+        self.flight.step(&mut self.world);
         self.game.watch(&self.world);
         self.steps = self.steps.saturating_add(1);
         (moment.tick, moment.hashes) = (self.world.tick(), None);

@@ -18,6 +18,8 @@ pub(crate) struct Decay {
     pub(crate) phi2: i64,
 }
 
+crate::store::show!(Decay { exp, phi1, phi2 });
+
 impl Decay {
     /// No drag.
     pub(crate) const NONE: Decay = Decay { exp: 1 << Q, phi1: 1 << Q, phi2: 1 << (Q - 1) };

@@ -8,7 +8,7 @@ use super::span::Span;
 use crate::body::{Attractor, Bodies, BodyData, BodyKind};
 use crate::geom::Vec2;
 use crate::num::{Acceleration, Damping, Force, Mu, Torque, clamp_i64, mul, mul_div};
-use crate::store::{Arena, clone_fields, record};
+use crate::store::{Arena, Cells, Draft, Kind, Show, Tables, clone_fields, record, show};
 
 /// A force and a torque that act on a body for one tick.
 #[derive(Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub(crate) struct Push {
     pub(crate) torque: Torque,
 }
 
-record!(Push { slot, force, torque });
+record!(Push { slot, force, torque } shown);
 
 /// Fraction bits of [`Drive::bow`]: a·T²/2 ≤ 32 768/450 < 2⁷ m for T ≤ 1/15 s, and 2⁷·2⁵⁶ fits.
 const BOW_FRAC: u32 = 56;
@@ -38,6 +38,8 @@ pub(crate) struct Damped {
     pub(crate) turn: Decay,
     pub(crate) turn_span: i64,
 }
+
+show!(Damped { slot, rates, line, line_span, turn, turn_span });
 
 /// The prepared motion of all bodies. Everything in it is derived.
 #[derive(Debug, Default, PartialEq)]
@@ -63,6 +65,32 @@ pub(crate) struct Drive {
 }
 
 clone_fields!(Drive { stages, steps, decay_span, kick, bow, damped, limited, push_at, sources });
+
+/// What is prepared for one body.
+struct Driven<'d>(&'d Drive, usize);
+
+impl Show for Driven<'_> {
+    fn show(&self, cells: &mut Cells<'_>) {
+        let Driven(drive, slot) = *self;
+        let of = |columns: &[Vec<i64>; 3]| columns.each_ref().map(|column| column[slot]);
+        cells.field("kick", |c| of(&drive.kick).show(c));
+        cells.field("bow", |c| of(&drive.bow).show(c));
+        cells.field("push", |c| drive.push_at[slot].show(c));
+    }
+}
+
+impl Drive {
+    /// Hands on all of it as tables.
+    pub(crate) fn show(&self, draft: &mut Draft, tables: &mut impl Tables) {
+        let Drive { stages, steps, decay_span, kick: _, bow: _, damped, limited, push_at, sources } = self;
+        draft.table(tables, "prepared motion", Kind::Body, (0..push_at.len()).map(|slot| Driven(self, slot)));
+        draft.table(tables, "prepared damping", Kind::OfBody, damped.iter());
+        draft.table(tables, "limited accelerations", Kind::OfBody, limited.iter());
+        draft.table(tables, "sources", Kind::List, sources.iter());
+        draft.table(tables, "integrator's stages", Kind::List, stages.iter());
+        draft.table(tables, "integrator's steps", Kind::List, [steps, decay_span].into_iter());
+    }
+}
 
 /// The constant acceleration of a body in m/s² and rad/s², 48 fraction bits, not yet limited to its format.
 ///

@@ -10,6 +10,7 @@
 use crate::body::{Attractor, Bodies};
 use crate::geom::Vec2;
 use crate::num::{Length, Mu, round_shift};
+use crate::store::{Cells, Show};
 
 /// Where one source's pull saturates: far above what the sum may be, far below where sums of 2²⁵ pulls wrap.
 const PULL_MAX: i128 = 1 << 100;
@@ -31,6 +32,26 @@ pub(crate) struct Source {
     /// μ = mantissa·2^(8 − zeros), the mantissa's highest bit set.
     mantissa: u64,
     zeros: u32,
+}
+
+impl Show for Source {
+    /// Where a body carries it, the last evaluation decides, and the next one moves it first: that is not shown.
+    fn show(&self, cells: &mut Cells<'_>) {
+        let Source { x, y, carrier, mantissa, zeros } = self;
+        let (kind, slot) = match carrier {
+            Carrier::Attractor(slot) => (0u8, slot),
+            Carrier::Body(slot) => (1, slot),
+        };
+        cells.turn(kind.into());
+        cells.field("carrier", |c| kind.show(c));
+        cells.field("slot", |c| slot.show(c));
+        cells.field("mantissa", |c| mantissa.show(c));
+        cells.field("zeros", |c| zeros.show(c));
+        if let Carrier::Attractor(_) = carrier {
+            cells.field("x", |c| x.show(c));
+            cells.field("y", |c| y.show(c));
+        }
+    }
 }
 
 impl Source {

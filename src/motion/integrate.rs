@@ -21,7 +21,7 @@ use super::gravity;
 use super::span::Span;
 use crate::body::Bodies;
 use crate::num::{Length, Quantity, add_sat, clamp_i64, mul, mul_add};
-use crate::store::record_enum;
+use crate::store::{Cells, Show, record_enum};
 use core::fmt;
 use core::ops::Range;
 use serde::{Deserialize, Serialize};
@@ -36,7 +36,7 @@ pub enum Integrator {
     SymplecticEuler,
 }
 
-record_enum!(Integrator { 0 => ForestRuth {}, 1 => SymplecticEuler {} });
+record_enum!(Integrator { 0 => ForestRuth {}, 1 => SymplecticEuler {} } shown);
 
 /// A part of an integrator's step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +49,19 @@ pub(crate) enum Stage {
     Drift(Span),
     /// Velocities by damping.
     Decay,
+}
+
+impl Show for Stage {
+    fn show(&self, cells: &mut Cells<'_>) {
+        let (tag, span) = match self {
+            Stage::Glide => (0u8, None),
+            Stage::Kick(span) => (1, Some(span)),
+            Stage::Drift(span) => (2, Some(span)),
+            Stage::Decay => (3, None),
+        };
+        cells.field("kind", |c| tag.show(c));
+        cells.field("span", |c| span.show(c));
+    }
 }
 
 /// The weights of the composed scheme, with 62 fraction bits: drifts ξ, χ, 1 − 2(χ + ξ), χ, ξ and between them kicks
@@ -120,7 +133,7 @@ pub enum Bound {
     Impacts,
 }
 
-record_enum!(Bound { 0 => Position {}, 1 => Turns {}, 2 => Velocity {}, 3 => AngularVelocity {}, 4 => Acceleration {}, 5 => ContactSpeed {}, 6 => Impacts {} });
+record_enum!(Bound { 0 => Position {}, 1 => Turns {}, 2 => Velocity {}, 3 => AngularVelocity {}, 4 => Acceleration {}, 5 => ContactSpeed {}, 6 => Impacts {} } shown);
 
 impl fmt::Display for Bound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -133,6 +146,14 @@ impl fmt::Display for Bound {
             Bound::ContactSpeed => "speed in contact",
             Bound::Impacts => "number of impacts in a tick",
         })
+    }
+}
+
+impl Show for Fault {
+    fn show(&self, cells: &mut Cells<'_>) {
+        let Fault { slot, bound } = self;
+        cells.field("slot", |c| (*slot as u32).show(c));
+        cells.field("bound", |c| bound.show(c));
     }
 }
 

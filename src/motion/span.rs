@@ -16,6 +16,8 @@ pub(crate) struct Span {
     pub(crate) turn: i64,
 }
 
+crate::store::show!(Span { line, turn });
+
 /// The fraction bits of a part of a span.
 const PART_FRAC: u32 = 62;
 

@@ -26,6 +26,8 @@ pub(crate) struct Point {
     pub(crate) id: u8,
 }
 
+crate::store::show!(Point { arm, separation, id });
+
 /// Where two outlines touch, or nearly do.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Manifold {
@@ -37,6 +39,8 @@ pub(crate) struct Manifold {
     /// By ascending id; zero beyond `count`.
     pub(crate) points: [Point; 2],
 }
+
+crate::store::show!(Manifold { normal, count, points });
 
 /// The manifold of two outlines, b's centre being `d` from a's (Q32 m), with the points whose separation is at most
 /// `limit` (Q32 m, not negative). Outlines that overlap have at least one point.

@@ -8,11 +8,17 @@
 //! truncated.
 
 mod error;
+mod evidence;
+mod finding;
+mod flight;
 mod format;
 mod player;
 mod recorder;
 
 pub use error::ReplayError;
+pub use evidence::{EVIDENCE_VERSION, Evidence, Origin};
+pub use finding::{Divergence, FieldValue, Finding};
+pub use flight::Flight;
 pub use format::REPLAY_VERSION;
 pub use player::{Player, Summary};
 pub use recorder::Recorder;

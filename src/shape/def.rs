@@ -48,7 +48,7 @@ impl Clone for Shape {
     }
 }
 
-record_enum!(Shape { 0 => Circle { radius }, 1 => Box { width, height }, 2 => Polygon { vertices } });
+record_enum!(Shape { 0 => Circle { radius }, 1 => Box { width, height }, 2 => Polygon { vertices } } shown);
 
 /// Which colliders meet: both must have a category that the other's mask has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -60,7 +60,7 @@ pub struct Filter {
     pub mask: u32,
 }
 
-record_copy!(Filter { category, mask });
+record_copy!(Filter { category, mask } shown);
 
 impl Default for Filter {
     /// Category 1, meeting everything.

@@ -29,6 +29,8 @@ pub(crate) struct Outline {
     pub(crate) reach: i64,
 }
 
+crate::store::show!(Outline { count, vertices, normals, radius, reach });
+
 /// An outline turned into the world's axes, still about its body's centre of mass. Formats and bounds as there.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Placed {

@@ -142,6 +142,11 @@ impl Past {
         }
     }
 
+    /// All of them, by slot.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = State> + '_ {
+        (0..self.columns[0].len()).map(|slot| self.state(slot))
+    }
+
     /// A body's, when the tick began.
     pub(crate) fn state(&self, slot: usize) -> State {
         let [x, y, angle, vx, vy, omega] = [0, 1, 2, 3, 4, 5].map(|at: usize| self.columns[at][slot]);

@@ -36,6 +36,20 @@ pub(crate) struct Mobility {
     pub(crate) fixed: bool,
 }
 
+crate::store::show!(Mobility {
+    mantissa,
+    exponent,
+    sigma,
+    tau,
+    tau_fine,
+    inverse,
+    inverse_shift,
+    scale,
+    scale_shift,
+    reach,
+    fixed,
+});
+
 const MANTISSA_BITS: u32 = 34;
 
 impl Mobility {

@@ -19,6 +19,7 @@ mod mover;
 mod prepare;
 mod rows;
 mod scales;
+mod show;
 mod strike;
 #[cfg(target_arch = "x86_64")]
 mod sweep;
@@ -43,6 +44,7 @@ use mover::Movers;
 use prepare::Joint;
 use rows::{Block, LANES};
 pub(crate) use scales::Scales;
+pub(crate) use show::Substep;
 use timeline::{Settled, Stage, Timeline};
 use turning::{Turning, turns};
 
@@ -190,7 +192,7 @@ impl Solver {
     }
 
     /// Impacts and substeps, after the bodies have moved as if nothing touched them; bodies that were struck or pushed are
-    /// put where that brings them.
+    /// put where that brings them. `watch` sees what each substep leaves.
     pub(crate) fn run(
         &mut self,
         touch: &mut Touch,
@@ -199,6 +201,7 @@ impl Solver {
         contacts: &Contacts,
         drive: &Drive,
         faults: &mut Vec<Fault>,
+        mut watch: impl FnMut(u32, Substep<'_>),
     ) {
         let Solver {
             mobilities,
@@ -282,6 +285,7 @@ impl Solver {
                     kernel.solve::<false>(block, lanes, &mut movers.lanes, scales);
                 }
                 direct.solve::<false>(blocks, &mut movers.lanes, scales);
+                watch(substep, Substep { touch, bodies, movers, blocks, colors, timeline });
             }
             for (row, &places) in places.iter().enumerate() {
                 let seat = colors.seats[row] as usize;

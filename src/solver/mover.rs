@@ -7,6 +7,7 @@ use crate::body::Bodies;
 use crate::geom::Vec2;
 use crate::motion::{Bound, Drive, Fault, turn_by};
 use crate::num::{Angle, AngularVelocity, Length, Quantity, Velocity, add_sat, clamp_i64, div, lane, mul, round_shift};
+use crate::store::{Cells, Draft, Kind, Show, Tables};
 use core::mem::replace;
 
 /// What rows read and write.
@@ -57,6 +58,9 @@ struct Course {
     slowed: bool,
 }
 
+crate::store::show!(Mover { v, w, phi, d });
+crate::store::show!(Course { slot, start, begin, kick, cut, sum, spin_max, hit, pushed, slowed });
+
 /// The bodies of this tick's contacts. The first is one that does not move, for all static bodies.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Movers {
@@ -70,7 +74,23 @@ pub(crate) struct Movers {
     pub(crate) turns: bool,
 }
 
+/// A body as rows see it: the speeds of a substep's beginning before those that they make of them.
+struct Moved<'m>(&'m Course, &'m Mover);
+
+impl Show for Moved<'_> {
+    fn show(&self, cells: &mut Cells<'_>) {
+        self.0.show(cells);
+        self.1.show(cells);
+    }
+}
+
 impl Movers {
+    /// Hands on all of it as tables.
+    pub(crate) fn show(&self, draft: &mut Draft, tables: &mut impl Tables) {
+        let movers = self.courses.iter().zip(&self.lanes).map(|(course, lane)| Moved(course, lane));
+        draft.table(tables, "movers", Kind::OfBody, movers);
+    }
+
     /// Forgets those of the last tick.
     pub(crate) fn clear(&mut self, slots: usize) {
         for course in &self.courses {

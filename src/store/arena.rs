@@ -5,6 +5,7 @@
 
 use super::codec::{DecodeError, Hasher, Reader, Sink};
 use super::record::{Diff, Record, record};
+use super::show::{Cells, Draft, Kind, Show, Tables, show};
 use core::fmt;
 use serde::{Deserialize, Serialize};
 
@@ -44,6 +45,8 @@ macro_rules! ids {
                 }
             }
         }
+
+        show!($name { index, generation });
     )*};
 }
 
@@ -108,6 +111,15 @@ impl<T: Row> Record for Slot<T> {
     }
 }
 
+impl<T: Row + Show> Show for Slot<T> {
+    fn show(&self, cells: &mut Cells<'_>) {
+        let Slot { generation, link, value } = self;
+        cells.field("generation", |c| generation.show(c));
+        cells.field("link", |c| link.show(c));
+        value.show(cells);
+    }
+}
+
 impl<T: Row> Clone for Slot<T> {
     fn clone(&self) -> Self {
         Slot { generation: self.generation, link: self.link, value: self.value.clone() }
@@ -128,7 +140,7 @@ struct Chain {
     live: u32,
 }
 
-record!(Chain { free, live });
+record!(Chain { free, live } shown);
 
 /// Values in slots, with a digest over all of them that every change renews.
 #[derive(Debug)]
@@ -252,10 +264,14 @@ impl<T: Row> Arena<T> {
 
     /// The hash of everything in the arena, at the cost of one small hash.
     pub(crate) fn hash(&self) -> u64 {
+        self.hash_with(self.digest)
+    }
+
+    fn hash_with(&self, digest: u64) -> u64 {
         let mut hasher = Hasher::new();
         (self.slots.len() as u64).save(&mut hasher);
         self.chain.save(&mut hasher);
-        self.digest.save(&mut hasher);
+        digest.save(&mut hasher);
         hasher.finish()
     }
 
@@ -296,6 +312,20 @@ impl<T: Row> Arena<T> {
             return Err("has a free slot that is not empty");
         }
         Ok(())
+    }
+
+    /// Hands on tables of the slots and of the chain of free ones.
+    pub(crate) fn show(&self, draft: &mut Draft, tables: &mut impl Tables, names: [&'static str; 2], kind: Kind)
+    where
+        T: Show,
+    {
+        draft.table(tables, names[0], kind, self.slots.iter());
+        draft.table(tables, names[1], Kind::World, core::iter::once(&self.chain));
+    }
+
+    /// As [`Arena::hash`], with a digest that is computed from the slots as memory holds them.
+    pub(crate) fn hash_afresh(&self) -> u64 {
+        self.hash_with(self.sum())
     }
 
     fn sum(&self) -> u64 {

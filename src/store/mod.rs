@@ -1,4 +1,4 @@
-//! Stored state: bytes in and out, field lists, columns, and slots with generations.
+//! Stored state: bytes in and out, field lists, columns, slots with generations; what memory holds, field by field.
 
 mod arena;
 mod codec;
@@ -6,6 +6,8 @@ mod column;
 mod record;
 #[cfg(feature = "ggrs")]
 mod serial;
+mod sheet;
+mod show;
 
 pub(crate) use arena::{Arena, Row};
 pub use arena::{AttractorId, BodyId, ColliderId};
@@ -16,3 +18,5 @@ pub use record::Difference;
 pub(crate) use record::{Diff, Record, clone_fields, record, record_copy, record_enum};
 #[cfg(feature = "ggrs")]
 pub(crate) use serial::{read_value, write_value};
+pub(crate) use sheet::{Cell, Sheet, Spot, take_text};
+pub(crate) use show::{Cells, Draft, Kind, Show, Tables, put_text, show};

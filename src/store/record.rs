@@ -1,6 +1,7 @@
 //! One field list per type drives save, load, hash, diff and copy.
 //!
-//! [`record!`] takes a struct apart without `..`, so the compiler refuses a list that forgets a field. Derived
+//! [`record!`] takes a struct apart without `..`, so the compiler refuses a list that forgets a field; with `shown` after
+//! it, evidence shows the same fields. Derived
 //! fields, which are computed from the others and rebuilt after loading, are listed apart, by name.
 
 use super::codec::{DecodeError, Reader, Sink, put};
@@ -188,6 +189,10 @@ impl<T: Record> Record for Vec<T> {
 
 /// [`record!`] for a type that is `Copy`, or needs no `Clone`.
 macro_rules! record_copy {
+    ($type:ident { $($field:ident),* $(,)? } shown) => {
+        $crate::store::record_copy!($type { $($field),* });
+        $crate::store::show!($type { $($field),* });
+    };
     ($type:ident { $($field:ident),* $(,)? } $(derived { $($derived:ident),* $(,)? })?) => {
         impl $crate::store::Record for $type {
             fn save(&self, sink: &mut impl $crate::store::Sink) {
@@ -214,6 +219,10 @@ macro_rules! record_copy {
 
 /// Implements [`Record`] and a `Clone` whose `clone_from` reuses allocations, from one list of fields.
 macro_rules! record {
+    ($type:ident { $($field:ident),* $(,)? } shown) => {
+        $crate::store::record!($type { $($field),* });
+        $crate::store::show!($type { $($field),* });
+    };
     ($type:ident { $($field:ident),* $(,)? } $(derived { $($derived:ident),* $(,)? })?) => {
         $crate::store::record_copy!($type { $($field),* } $(derived { $($derived),* })?);
         $crate::store::clone_fields!($type { $($field,)* $($($derived,)*)? });
@@ -240,6 +249,21 @@ macro_rules! clone_fields {
 /// Implements [`Record`] for an enum: a tag byte, then the variant's fields. The match and its patterns are
 /// complete, so a forgotten variant or field does not compile.
 macro_rules! record_enum {
+    ($type:ident { $($tag:literal => $variant:ident { $($field:ident),* $(,)? }),* $(,)? } shown) => {
+        $crate::store::record_enum!($type { $($tag => $variant { $($field),* }),* });
+
+        impl $crate::store::Show for $type {
+            fn show(&self, cells: &mut $crate::store::Cells<'_>) {
+                match self {
+                    $( $type::$variant { $($field),* } => {
+                        cells.turn($tag);
+                        $crate::store::Show::show(&($tag as u8), cells);
+                        $( cells.field(stringify!($field), |c| $crate::store::Show::show($field, c)); )*
+                    } )*
+                }
+            }
+        }
+    };
     ($type:ident { $($tag:literal => $variant:ident { $($field:ident),* $(,)? }),* $(,)? }) => {
         impl $crate::store::Record for $type {
             fn save(&self, sink: &mut impl $crate::store::Sink) {

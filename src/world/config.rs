@@ -29,7 +29,7 @@ pub struct WorldDef {
     pub sleeping: Option<Sleeping>,
 }
 
-record!(WorldDef { tick_rate, substeps, gravity, integrator, unit_shift, sleeping });
+record!(WorldDef { tick_rate, substeps, gravity, integrator, unit_shift, sleeping } shown);
 
 impl Default for WorldDef {
     fn default() -> Self {

@@ -8,7 +8,9 @@ mod command;
 mod commands;
 mod config;
 mod query;
+mod show;
 mod sleep;
+mod stage;
 mod status;
 mod step;
 
@@ -23,7 +25,9 @@ pub use command::{Command, CommandError, INPUT_MAX, Reply};
 pub use commands::Commands;
 pub use config::{ConfigError, Integrator, Sleeping, WorldDef};
 pub use query::{ClosestPoint, RayHit};
+pub use stage::Stage;
 pub use status::{Bound, Status, StatusEntry};
+pub(crate) use step::Watch;
 
 /// A world of bodies under forces.
 ///

@@ -14,7 +14,7 @@ pub struct StatusEntry {
     pub bound: Bound,
 }
 
-record!(StatusEntry { tick, body, bound });
+record!(StatusEntry { tick, body, bound } shown);
 
 impl core::fmt::Display for StatusEntry {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {

@@ -1,8 +1,27 @@
 //! One tick.
 
 use super::sleep::Sleepers;
+use super::stage::Stage;
 use crate::World;
 use crate::motion::{Fault, integrate};
+use crate::solver::Substep;
+
+/// Who looks at a tick from inside.
+pub(crate) trait Watch {
+    /// After each stage. May do anything to the world: a fault, in tests.
+    fn stage(&mut self, stage: Stage, world: &mut World);
+
+    /// After each substep of [`Stage::Solve`], from 1 on.
+    fn substep(&mut self, _at: u32, _substep: Substep<'_>) {}
+}
+
+/// Costs nothing.
+struct Nobody;
+
+impl Watch for Nobody {
+    #[inline(always)]
+    fn stage(&mut self, _: Stage, _: &mut World) {}
+}
 
 impl World {
     /// Advances the world by one tick, 1/tick_rate s.
@@ -11,62 +30,140 @@ impl World {
     /// [`World::status`] names the body and the quantity. The same state and commands give the same bits on every
     /// machine.
     pub fn step(&mut self) {
-        // All of the world: what is not here is not state.
-        let World {
-            config,
-            tick,
-            bodies,
-            colliders,
-            attractors: _,
-            pushes,
-            contacts,
-            resting,
-            status,
-            drive,
-            touch,
-            solver,
-            events,
-            faults,
-            next,
-        } = self;
+        self.step_through(&mut Nobody);
+    }
 
-        // Forces of this tick: into the prepared motion, and out of it again below.
+    /// As [`World::step`], and `watch` sees the world after each stage. To watch changes nothing.
+    ///
+    /// ```
+    /// use tamias2d::{Stage, World, WorldDef};
+    /// let mut world = World::new(&WorldDef::default())?;
+    /// let mut stages = Vec::new();
+    /// world.step_watched(|stage, _| stages.push(stage));
+    /// assert_eq!((stages[0], stages.last()), (Stage::Forces, Some(&Stage::Close)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn step_watched(&mut self, watch: impl FnMut(Stage, &World)) {
+        struct Looks<F>(F);
+        impl<F: FnMut(Stage, &World)> Watch for Looks<F> {
+            fn stage(&mut self, stage: Stage, world: &mut World) {
+                (self.0)(stage, world);
+            }
+        }
+        self.step_through(&mut Looks(watch));
+    }
+
+    /// The stages of a tick, in order.
+    pub(crate) fn step_through(&mut self, watch: &mut impl Watch) {
+        self.begin_forces();
+        watch.stage(Stage::Forces, self);
+        self.sort_sleepers();
+        watch.stage(Stage::Sort, self);
+        for attempt in 0.. {
+            self.find_pairs();
+            watch.stage(Stage::Find, self);
+            self.prepare_rows();
+            watch.stage(Stage::Prepare, self);
+            self.integrate_freely();
+            watch.stage(Stage::Integrate, self);
+            self.solve_contacts(watch);
+            watch.stage(Stage::Solve, self);
+            // A tick that touches what sleeps is computed anew, with that awake.
+            if !self.wake_touched(attempt) {
+                break;
+            }
+            watch.stage(Stage::Wake, self);
+        }
+        self.keep_contacts();
+        watch.stage(Stage::Contacts, self);
+        self.end_forces();
+        watch.stage(Stage::Release, self);
+        self.fall_asleep();
+        watch.stage(Stage::Sleep, self);
+        self.close_tick();
+        watch.stage(Stage::Close, self);
+    }
+
+    /// Forces of this tick: into the prepared motion, and out of it again by [`World::end_forces`].
+    fn begin_forces(&mut self) {
+        let World { config, bodies, pushes, drive, .. } = self;
         for push in pushes.iter() {
             let slot = push.slot as usize;
             drive.set(slot, bodies.cold.value(slot), config.gravity, Some(push));
         }
+    }
 
+    /// Contacts on their list, of what is awake or of what sleeps, and the runs of slots that are awake.
+    fn sort_sleepers(&mut self) {
+        let World { bodies, colliders, contacts, resting, .. } = self;
         resting.settle(contacts, bodies, colliders);
         bodies.rest.settle();
-        for attempt in 0.. {
-            touch.find(bodies, colliders, contacts, drive, solver.scales.margins);
-            solver.prepare(touch, contacts, bodies, drive);
-            bodies.remember(&mut resting.before);
-            integrate(bodies, drive, faults);
-            solver.run(touch, bodies, colliders, contacts, drive, faults);
-            // A tick that touches what sleeps is computed anew, with that awake.
-            let mut sleepers = Sleepers { bodies, colliders, contacts, resting, touch, drive, gravity: config.gravity };
-            if !sleepers.wake_touched(solver, attempt) {
-                break;
-            }
+    }
+
+    fn find_pairs(&mut self) {
+        let World { bodies, colliders, contacts, drive, touch, solver, .. } = self;
+        touch.find(bodies, colliders, contacts, drive, solver.scales.margins);
+    }
+
+    fn prepare_rows(&mut self) {
+        let World { bodies, contacts, drive, touch, solver, .. } = self;
+        solver.prepare(touch, contacts, bodies, drive);
+    }
+
+    /// Every body as if nothing touched it.
+    fn integrate_freely(&mut self) {
+        let World { bodies, resting, drive, faults, .. } = self;
+        bodies.remember(&mut resting.before);
+        integrate(bodies, drive, faults);
+    }
+
+    fn solve_contacts(&mut self, watch: &mut impl Watch) {
+        let World { bodies, colliders, contacts, drive, touch, solver, faults, .. } = self;
+        solver.run(touch, bodies, colliders, contacts, drive, faults, |at, substep| watch.substep(at, substep));
+    }
+
+    /// Whether the tick touched what sleeps: then it is taken back, and that is awake.
+    fn wake_touched(&mut self, attempt: u32) -> bool {
+        let World { config, bodies, colliders, contacts, resting, drive, touch, solver, faults, .. } = self;
+        let mut sleepers = Sleepers { bodies, colliders, contacts, resting, touch, drive, gravity: config.gravity };
+        let woken = sleepers.wake_touched(solver, attempt);
+        if woken {
             faults.clear();
         }
-        touch.finish(contacts, next, colliders, events, |pair| solver.outcome(pair));
+        woken
+    }
 
+    /// The contacts that last, and what began and ended to touch.
+    fn keep_contacts(&mut self) {
+        let World { colliders, contacts, touch, solver, events, next, .. } = self;
+        touch.finish(contacts, next, colliders, events, |pair| solver.outcome(pair));
+    }
+
+    fn end_forces(&mut self) {
+        let World { config, bodies, pushes, drive, .. } = self;
         for push in pushes.drain(..) {
             let slot = push.slot as usize;
             drive.push_at[slot] = u32::MAX;
             drive.set(slot, bodies.cold.value(slot), config.gravity, None);
         }
-        if let Some(sleeping) = config.sleeping {
-            let limits = sleeping.limits(config.tick_rate, config.unit_shift);
-            for slot in solver.shifted(limits.0) {
-                if !bodies.rest.is_asleep(slot) {
-                    bodies.rest.note(slot, 0);
-                }
+    }
+
+    /// Counts who is quiet; islands that have been for long enough fall asleep.
+    fn fall_asleep(&mut self) {
+        let World { config, bodies, colliders, contacts, resting, drive, touch, solver, .. } = self;
+        let Some(sleeping) = config.sleeping else { return };
+        let limits = sleeping.limits(config.tick_rate, config.unit_shift);
+        for slot in solver.shifted(limits.0) {
+            if !bodies.rest.is_asleep(slot) {
+                bodies.rest.note(slot, 0);
             }
-            Sleepers { bodies, colliders, contacts, resting, touch, drive, gravity: config.gravity }.lull_quiet(limits);
         }
+        Sleepers { bodies, colliders, contacts, resting, touch, drive, gravity: config.gravity }.lull_quiet(limits);
+    }
+
+    /// What went out of range, into the status; and the tick is over.
+    fn close_tick(&mut self) {
+        let World { tick, bodies, status, faults, .. } = self;
         for Fault { slot, bound } in faults.drain(..) {
             if let Some(body) = bodies.id(slot) {
                 status.note(*tick, body, bound);
