@@ -90,9 +90,14 @@ impl Rough {
                 if self.dice.roll(1000) < self.weather.loss || !buffer[..length].starts_with(&self.hello[..8]) {
                     continue;
                 }
-                let refused = |error| format!("no session with {from}: {error}");
-                let theirs = Hello::decode(&buffer[..length]).map_err(refused)?;
-                hello.check(&theirs).map_err(refused)?;
+                if let Err(error) = Hello::decode(&buffer[..length]).and_then(|theirs| hello.check(&theirs)) {
+                    // So that the other one can say why as well.
+                    for _ in 0..10 {
+                        let _ = self.socket.send_to(&self.hello, from);
+                        std::thread::sleep(Duration::from_millis(2));
+                    }
+                    return Err(format!("no session with {from}: {error}"));
+                }
                 if missing.contains(&from) {
                     missing.retain(|peer| *peer != from);
                     let _ = self.socket.send_to(&self.hello, from);
