@@ -143,7 +143,7 @@ proptest! {
         prop_assert_eq!(player.world().hash(), hash);
         let summary = Summary { ticks, commands: accepted, hash };
         prop_assert_eq!(verify(&file).expect("it plays"), summary);
-        prop_assert_eq!(Player::new(file.as_slice()).expect("a replay").inspect().expect("whole"), summary);
+        prop_assert_eq!(Player::new(file.as_slice()).expect("a replay").inspect().expect("whole").summary, summary);
     }
 }
 
@@ -354,13 +354,13 @@ fn commands_after_the_last_tick_are_played() {
 }
 
 #[test]
-fn an_idle_tick_costs_thirteen_bytes() {
+fn an_idle_tick_costs_nine_bytes() {
     let tape = Tape::new(usize::MAX);
     let mut game = Recorder::new(start(), tape.clone()).expect("it can be written");
     for _ in 0..10 {
         let before = tape.len();
         game.step();
-        assert_eq!(tape.len() - before, 13);
+        assert_eq!(tape.len() - before, 9);
     }
     let before = tape.len();
     drop(game.finish().expect("it can be written"));
@@ -443,7 +443,7 @@ fn every_flipped_bit_is_found_at_its_place() {
 }
 
 #[test]
-fn a_bit_flipped_in_the_header_or_the_digest_is_named() {
+fn a_bit_flipped_in_the_header_or_the_end_is_named() {
     let (file, _) = short();
     let flipped = |at: usize| {
         let mut bytes = file.clone();
@@ -456,12 +456,10 @@ fn a_bit_flipped_in_the_header_or_the_digest_is_named() {
     assert_eq!(flipped(20), header);
     assert_eq!(flipped(31), header);
     let end = file.len() - 25;
-    assert_eq!(flipped(end + 1), format!("replay corrupt at tick 7, byte {end}: the digest does not fit the file"));
-    assert_eq!(
-        flipped(end + 9),
-        format!("replay corrupt at tick 7, byte {end}: the end's chain is not that of the records")
-    );
-    assert_eq!(flipped(end + 24), format!("replay corrupt at tick 7, byte {end}: the digest does not fit the file"));
+    let chain = format!("replay corrupt at tick 7, byte {end}: the end's chain is not that of the records");
+    for at in [1, 9, 17, 24] {
+        assert_eq!(flipped(end + at), chain);
+    }
     assert_eq!(flipped(40), "replay corrupt at tick 0, byte 32: the record's check does not fit it");
 }
 
@@ -538,9 +536,12 @@ impl Forge {
     }
 
     fn idle(self, hash: u64) -> Forge {
+        let mut forge = self;
         let mut record = vec![0x02];
         record.extend(hash.to_le_bytes());
-        self.chained(&record)
+        forge.chain = XxHash3_64::oneshot_with_seed(forge.chain, &record);
+        forge.bytes.extend(record);
+        forge
     }
 
     /// A tick (0x03) or a tail (0x04) with encoded commands.
@@ -551,11 +552,12 @@ impl Forge {
     }
 
     fn end(mut self, ticks: u64) -> Vec<u8> {
-        self.bytes.push(0x0f);
-        self.bytes.extend(ticks.to_le_bytes());
-        self.bytes.extend(self.chain.to_le_bytes());
-        let digest = XxHash3_64::oneshot(&self.bytes);
-        self.bytes.extend(digest.to_le_bytes());
+        let mut record = vec![0x0f];
+        record.extend(ticks.to_le_bytes());
+        record.extend(0u64.to_le_bytes());
+        let chain = XxHash3_64::oneshot_with_seed(self.chain, &record);
+        self.bytes.extend(record);
+        self.bytes.extend(chain.to_le_bytes());
         self.bytes
     }
 }
@@ -597,7 +599,7 @@ fn the_format_is_as_documented() {
     game.set_user_data(TWO, 19).expect("accepted");
     forge = forge.with_commands(0x04, game.world().hash(), &set_user_data(TWO, 19));
     assert_eq!(game.finish().expect("it can be written"), forge.end(3));
-    assert_eq!(REPLAY_VERSION, 2);
+    assert_eq!(REPLAY_VERSION, 3);
 }
 
 #[test]
@@ -620,7 +622,7 @@ fn a_divergence_is_named_at_its_tick() {
             format!("replay diverged at tick {tick}: hash {computed:016x}, recorded {recorded:016x}")
         );
         // The file itself is whole.
-        assert_eq!(Player::new(file.as_slice()).expect("a replay").inspect().expect("it is whole").ticks, 6);
+        assert_eq!(Player::new(file.as_slice()).expect("a replay").inspect().expect("it is whole").summary.ticks, 6);
     }
     // A tail that diverges is named at the last tick.
     let file = Forge::new(60).world(&start()).idle(hashes[0]).with_commands(0x04, 5, &set_user_data(TWO, 1)).end(1);
@@ -676,12 +678,15 @@ fn other_versions_laws_and_tick_rates_are_refused() {
     assert!(matches!(error(&file(Forge::of(1, LAW, 60, 0))), ReplayError::Version { found: 1, known: REPLAY_VERSION }));
     assert_eq!(
         error(&file(Forge::of(1, LAW, 60, 0))).to_string(),
-        "replay of format version 1, this build reads version 2"
+        "replay of format version 1, this build reads version 3: record it anew, or play it with the build that made it"
     );
     assert!(matches!(error(&file(Forge::of(REPLAY_VERSION, LAW + 1, 60, 0))), ReplayError::Law { known: LAW, .. }));
     assert_eq!(
         error(&file(Forge::of(REPLAY_VERSION, 7, 60, 0))).to_string(),
-        format!("replay under arithmetic law 7, this build computes by law {LAW}")
+        format!(
+            "replay under arithmetic law 7, this build computes by law {LAW} and would play it differently: play it with a build \
+             of law 7, or record it anew"
+        )
     );
     assert_eq!(
         error(&file(Forge::new(61))).to_string(),
@@ -707,12 +712,12 @@ fn ancillary_records_are_skipped_and_unknown_ones_refused() {
             .record(last, &[0; 300])
             .end(2)
     };
-    for tag in [0x80, 0x9c, 0xff] {
+    for tag in [0x84, 0x9c, 0xff] {
         assert_eq!(verify(&with([tag; 3])).expect("it plays"), Summary { ticks: 2, commands: 0, hash: hashes[1] });
     }
     for unknown in [0x00, 0x05, 0x0e, 0x10, 0x42, 0x7f] {
         for (place, tick) in [(0, 0), (1, 2), (2, 3)] {
-            let mut tags = [0x80; 3];
+            let mut tags = [0x84; 3];
             tags[place] = unknown;
             let found = error(&with(tags));
             let ReplayError::UnknownRecord { tick: at, offset, tag } = found else { panic!("{found:?}") };
@@ -751,20 +756,25 @@ fn records_out_of_place_are_refused() {
     // Records that were left out, doubled or moved, each with its own check.
     let records = |order: &[usize]| {
         let whole = begin().world(&world).idle(hashes[0]).idle(hashes[1]).idle(hashes[2]);
-        let first = whole.bytes.len() - 3 * 13;
+        let first = whole.bytes.len() - 3 * 9;
         let mut bytes = whole.bytes[..first].to_vec();
         for &at in order {
-            bytes.extend(&whole.bytes[first + 13 * at..][..13]);
+            bytes.extend(&whole.bytes[first + 9 * at..][..9]);
         }
         Forge { bytes, chain: whole.chain }.end(order.len() as u64)
     };
     assert_eq!(verify(&records(&[0, 1, 2])).expect("it plays").ticks, 3);
-    let check = "the record's check does not fit it";
+    // Idle ticks have no check of their own: the hash says where, and the next check that it is the file's fault.
+    let check = "the end's chain is not that of the records";
     assert_eq!(corrupt(&records(&[1, 2])), (1, check));
     assert_eq!(corrupt(&records(&[0, 2])), (2, check));
     assert_eq!(corrupt(&records(&[0, 0, 1, 2])), (2, check));
     assert_eq!(corrupt(&records(&[1, 0, 2])), (1, check));
-    assert_eq!(corrupt(&records(&[0, 1])), (3, "the end's chain is not that of the records"));
+    assert_eq!(corrupt(&records(&[0, 1])), (3, check));
+    // Where no check follows, nobody knows whose fault a hash is.
+    let mut cut = records(&[1]);
+    cut.truncate(cut.len() - 25);
+    assert_eq!(corrupt(&cut), (1, "a hash differs, and the file ends before a check says whether it was recorded so"));
 }
 
 #[test]
@@ -874,5 +884,5 @@ fn a_tick_of_very_many_commands_is_decoded_one_by_one() {
     assert_eq!(result.expect("as recorded").commands, 100_000);
     assert!(largest <= file.len() * 9 / 8, "{largest} bytes for a file of {}", file.len());
     let player = Player::new(file.as_slice()).expect("as recorded");
-    assert_eq!(player.inspect().expect("as recorded").commands, 100_000);
+    assert_eq!(player.inspect().expect("as recorded").summary.commands, 100_000);
 }

@@ -31,8 +31,9 @@ impl Info {
         let (version, law) = (tamias2d::replay::REPLAY_VERSION, tamias2d::LAW);
         let (rate, substeps) = (config.tick_rate, config.substeps);
         let start = world.hash();
-        let summary = player.inspect().map_err(|error| verify::failure(&self.file, &error))?;
-        let (ticks, commands, end) = (summary.ticks, summary.commands, summary.hash);
+        let contents = player.inspect().map_err(|error| verify::failure(&self.file, &error))?;
+        let (ticks, commands, end) = (contents.summary.ticks, contents.summary.commands, contents.summary.hash);
+        let (keyframes, evidence) = (contents.keyframes.len(), contents.evidence);
         let milliseconds = u128::from(ticks) * 1000 / u128::from(rate);
         let mut out = std::io::stdout().lock();
         if self.json {
@@ -40,7 +41,7 @@ impl Info {
                 out,
                 "{{\"format\":{version},\"law\":{law},\"tick_rate\":{rate},\"substeps\":{substeps},\"dynamic\":{dynamic},\
                  \"kinematic\":{kinematic},\"static\":{fixed},\"colliders\":{colliders},\"attractors\":{attractors},\
-                 \"ticks\":{ticks},\"commands\":{commands},\"first_hash\":\"{start:016x}\",\"last_hash\":\"{end:016x}\"}}"
+                 \"ticks\":{ticks},\"commands\":{commands},\"keyframes\":{keyframes},\"evidence\":{evidence},\"first_hash\":\"{start:016x}\",\"last_hash\":\"{end:016x}\"}}"
             )?;
             return Ok(());
         }
@@ -54,6 +55,7 @@ impl Info {
              {attractors} attractors"
         )?;
         writeln!(out, "commands    {commands}")?;
+        writeln!(out, "keyframes   {keyframes}, and {evidence} ticks with evidence")?;
         writeln!(out, "hashes      {start:016x} at tick 0, {end:016x} at the end")?;
         Ok(())
     }

@@ -83,6 +83,32 @@ pub enum ReplayError {
         /// The hash of the world as played.
         computed: u64,
     },
+    /// A part of the state has another hash than the recorded one, though the state's own hash is that. A fault of the memory in
+    /// which the recording was made is seen so: in what only commands change.
+    DivergedPart {
+        /// The tick.
+        tick: u64,
+        /// The part's name.
+        part: &'static str,
+        /// The recorded hash.
+        recorded: u64,
+        /// The hash of the part as played.
+        computed: u64,
+    },
+    /// A tick was asked for that the recording does not have.
+    NoSuchTick {
+        /// The tick asked for.
+        tick: u64,
+        /// The recording's ticks.
+        ticks: u64,
+    },
+    /// A keyframe does not hold the world as played.
+    DivergedKeyframe {
+        /// The tick.
+        tick: u64,
+        /// Where the keyframe begins.
+        offset: u64,
+    },
 }
 
 impl ReplayError {
@@ -105,10 +131,19 @@ impl fmt::Display for ReplayError {
             ReplayError::Io(error) => write!(f, "cannot be read: {error}"),
             ReplayError::NotAReplay => f.write_str("not a tamias2d replay"),
             ReplayError::Version { found, known } => {
-                write!(f, "replay of format version {found}, this build reads version {known}")
+                let older = if found < known {
+                    "record it anew, or play it with the build that made it"
+                } else {
+                    "play it with a newer build"
+                };
+                write!(f, "replay of format version {found}, this build reads version {known}: {older}")
             }
             ReplayError::Law { found, known } => {
-                write!(f, "replay under arithmetic law {found}, this build computes by law {known}")
+                write!(
+                    f,
+                    "replay under arithmetic law {found}, this build computes by law {known} and would play it differently: play it \
+                     with a build of law {found}, or record it anew"
+                )
             }
             ReplayError::Corrupt { tick, offset, reason } => {
                 write!(f, "replay corrupt at tick {tick}, byte {offset}: {reason}")
@@ -128,6 +163,21 @@ impl fmt::Display for ReplayError {
             }
             ReplayError::Diverged { tick, recorded, computed } => {
                 write!(f, "replay diverged at tick {tick}: hash {computed:016x}, recorded {recorded:016x}")
+            }
+            ReplayError::DivergedPart { tick, part, recorded, computed } => {
+                write!(
+                    f,
+                    "replay diverged at tick {tick} in part {part}: hash {computed:016x}, recorded {recorded:016x}"
+                )
+            }
+            ReplayError::NoSuchTick { tick, ticks } => {
+                write!(f, "there is no tick {tick} in the replay, which has ticks 1 to {ticks}")
+            }
+            ReplayError::DivergedKeyframe { tick, offset } => {
+                write!(
+                    f,
+                    "replay diverged at tick {tick}: the keyframe at byte {offset} holds another world than was played"
+                )
             }
         }
     }

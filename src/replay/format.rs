@@ -3,12 +3,11 @@
 use super::error::ReplayError;
 use crate::snapshot::LAW;
 use crate::store::{Reader, put};
-use core::hash::Hasher as _;
 use std::io::{Read, Write};
-use twox_hash::{XxHash3_64, xxhash3_64};
+use twox_hash::XxHash3_64;
 
 /// The format version of replays.
-pub const REPLAY_VERSION: u32 = 2;
+pub const REPLAY_VERSION: u32 = 3;
 
 const MAGIC: &[u8; 8] = b"TAMIAS-R";
 const HEADER: usize = 32;
@@ -22,6 +21,10 @@ pub(super) mod tag {
     pub(crate) const TAIL: u8 = 0x04;
     pub(crate) const END: u8 = 0x0f;
     pub(crate) const ANCILLARY: u8 = 0x80;
+    pub(crate) const KEYFRAME: u8 = 0x80;
+    pub(crate) const PARTS: u8 = 0x81;
+    pub(crate) const EVIDENCE: u8 = 0x82;
+    pub(crate) const INDEX: u8 = 0x83;
 }
 
 /// The header of a replay at a tick rate.
@@ -40,7 +43,7 @@ fn header(tick_rate: u32) -> Vec<u8> {
 pub(super) struct RecordWriter<W> {
     out: W,
     chain: u64,
-    digest: xxhash3_64::Hasher,
+    offset: u64,
     scratch: Vec<u8>,
 }
 
@@ -48,17 +51,23 @@ impl<W: Write> RecordWriter<W> {
     pub(super) fn new(out: W, tick_rate: u32) -> std::io::Result<Self> {
         let bytes = header(tick_rate);
         let chain = seed(&bytes);
-        let mut writer = RecordWriter { out, chain, digest: xxhash3_64::Hasher::new(), scratch: Vec::new() };
+        let mut writer = RecordWriter { out, chain, offset: 0, scratch: Vec::new() };
         writer.write(&bytes)?;
         Ok(writer)
     }
 
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
-        self.digest.write(bytes);
-        self.out.write_all(bytes)
+        self.out.write_all(bytes)?;
+        self.offset = self.offset.saturating_add(bytes.len() as u64);
+        Ok(())
     }
 
-    /// Writes a record: its tag, the payload's length unless it is an idle tick, the payload and the check.
+    /// Where the next record begins, and the chain before it.
+    pub(super) fn place(&self) -> (u64, u64) {
+        (self.offset, self.chain)
+    }
+
+    /// Writes a record: its tag, the payload's length, the payload and the check; of an idle tick tag and payload alone.
     pub(super) fn record(&mut self, tag: u8, payload: &[u8]) -> std::io::Result<()> {
         let mut bytes = core::mem::take(&mut self.scratch);
         bytes.clear();
@@ -70,24 +79,29 @@ impl<W: Write> RecordWriter<W> {
         }
         bytes.extend_from_slice(payload);
         self.chain = XxHash3_64::oneshot_with_seed(self.chain, &bytes);
-        put(&mut bytes, self.chain as u32);
+        if tag != tag::IDLE {
+            put(&mut bytes, self.chain as u32);
+        }
         let result = self.write(&bytes);
         self.scratch = bytes;
         result
     }
 
     /// Writes the end record and gives the destination back.
-    pub(super) fn end(mut self, ticks: u64) -> std::io::Result<W> {
+    pub(super) fn end(mut self, ticks: u64, index: u64) -> std::io::Result<W> {
         let mut bytes = vec![tag::END];
         put(&mut bytes, ticks);
-        put(&mut bytes, self.chain);
+        put(&mut bytes, index);
+        let chain = XxHash3_64::oneshot_with_seed(self.chain, &bytes);
+        put(&mut bytes, chain);
         self.write(&bytes)?;
-        let digest = self.digest.finish();
-        self.out.write_all(&digest.to_le_bytes())?;
         self.out.flush()?;
         Ok(self.out)
     }
 }
+
+/// What the end record has, in bytes.
+pub(super) const END_SIZE: u64 = 25;
 
 /// The chain before the first record: the header's own hash.
 fn seed(header: &[u8]) -> u64 {
@@ -103,6 +117,8 @@ pub(super) enum Found {
     },
     End {
         ticks: u64,
+        /// Where the index is; 0 without one.
+        index: u64,
     },
     /// The file ends here without an end record.
     Cut,
@@ -112,7 +128,6 @@ pub(super) enum Found {
 pub(super) struct RecordReader<R> {
     input: R,
     chain: u64,
-    digest: xxhash3_64::Hasher,
     offset: u64,
     bytes: Vec<u8>,
     payload: core::ops::Range<usize>,
@@ -121,9 +136,7 @@ pub(super) struct RecordReader<R> {
 
 impl<R: Read> RecordReader<R> {
     pub(super) fn new(input: R) -> Result<Self, ReplayError> {
-        let digest = xxhash3_64::Hasher::new();
-        let mut reader =
-            RecordReader { input, chain: 0, digest, offset: 0, bytes: Vec::new(), payload: 0..0, tick_rate: 0 };
+        let mut reader = Self::at(input, 0, 0);
         let whole = reader.fetch(HEADER)?;
         let bytes = &reader.bytes;
         if !MAGIC.starts_with(&bytes[..bytes.len().min(MAGIC.len())]) {
@@ -148,6 +161,16 @@ impl<R: Read> RecordReader<R> {
         (reader.tick_rate, reader.chain) = (tick_rate, seed(bytes));
         reader.take_in();
         Ok(reader)
+    }
+
+    /// Reads from the middle on: `input` stands at `offset`, and `chain` is that of all records before.
+    pub(super) fn at(input: R, offset: u64, chain: u64) -> Self {
+        RecordReader { input, chain, offset, bytes: Vec::new(), payload: 0..0, tick_rate: 0 }
+    }
+
+    /// The chain of all records so far.
+    pub(super) fn chain(&self) -> u64 {
+        self.chain
     }
 
     /// Where reading has come to.
@@ -187,14 +210,24 @@ impl<R: Read> RecordReader<R> {
         Ok(true)
     }
 
-    /// The buffered bytes are accepted: they count in the digest, and the next record starts afresh.
+    /// The buffered bytes are accepted, and the next record starts afresh.
     fn take_in(&mut self) {
-        self.digest.write(&self.bytes);
         self.bytes.clear();
     }
 
     /// The next record.
     pub(super) fn next(&mut self) -> Result<Found, ReplayError> {
+        let found = self.next_unchecked()?;
+        if let Found::Record { tag, offset } = found {
+            if tag != tag::IDLE && self.last_u32() != self.chain as u32 {
+                return Err(ReplayError::Corrupt { tick: 0, offset, reason: "the record's check does not fit it" });
+            }
+        }
+        Ok(found)
+    }
+
+    /// The next record, whose check nobody has looked at.
+    pub(super) fn next_unchecked(&mut self) -> Result<Found, ReplayError> {
         self.take_in();
         let offset = self.offset;
         if !self.fetch(1)? {
@@ -213,15 +246,13 @@ impl<R: Read> RecordReader<R> {
             self.last_u32() as usize
         };
         let start = self.bytes.len();
-        if !self.fetch(length)? || !self.fetch(4)? {
+        let check = if tag == tag::IDLE { 0 } else { 4 };
+        if !self.fetch(length)? || !self.fetch(check)? {
             return Ok(Found::Cut);
         }
         self.payload = start..start.saturating_add(length);
         let (body, _) = self.bytes.split_at(self.payload.end);
         self.chain = XxHash3_64::oneshot_with_seed(self.chain, body);
-        if self.last_u32() != self.chain as u32 {
-            return Err(ReplayError::Corrupt { tick: 0, offset, reason: "the record's check does not fit it" });
-        }
         Ok(Found::Record { tag, offset })
     }
 
@@ -241,21 +272,18 @@ impl<R: Read> RecordReader<R> {
         if !self.fetch(8)? {
             return Ok(Found::Cut);
         }
-        if self.last_u64() != self.chain {
-            return Err(ReplayError::Corrupt { tick: 0, offset, reason: "the end's chain is not that of the records" });
-        }
-        self.take_in();
-        let digest = self.digest.finish();
+        let index = self.last_u64();
+        let chain = XxHash3_64::oneshot_with_seed(self.chain, &self.bytes);
         if !self.fetch(8)? {
             return Ok(Found::Cut);
         }
-        if self.last_u64() != digest {
-            return Err(ReplayError::Corrupt { tick: 0, offset, reason: "the digest does not fit the file" });
+        if self.last_u64() != chain {
+            return Err(ReplayError::Corrupt { tick: 0, offset, reason: "the end's chain is not that of the records" });
         }
         let end = self.offset;
         if self.fetch(1)? {
             return Err(ReplayError::Trailing { offset: end });
         }
-        Ok(Found::End { ticks })
+        Ok(Found::End { ticks, index })
     }
 }

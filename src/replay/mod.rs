@@ -7,18 +7,25 @@
 //! A file without its end was cut off, by a crash or a full disk: it is played to its last whole tick and reported as
 //! truncated.
 
+mod compare;
 mod error;
 mod evidence;
 mod finding;
 mod flight;
 mod format;
+mod keyframe;
 mod player;
 mod recorder;
+mod segment;
+mod skim;
 
+pub use compare::{Account, Comparison, compare, recompute};
 pub use error::ReplayError;
 pub use evidence::{EVIDENCE_VERSION, Evidence, Origin};
 pub use finding::{Divergence, FieldValue, Finding};
 pub use flight::Flight;
 pub use format::REPLAY_VERSION;
-pub use player::{Player, Summary};
-pub use recorder::Recorder;
+pub use keyframe::{Keyframe, read_index};
+pub use player::{Contents, Player, Summary};
+pub use recorder::{Recorder, Recording};
+pub use segment::Segment;

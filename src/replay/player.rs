@@ -2,6 +2,7 @@
 
 use super::error::ReplayError;
 use super::format::{Found, RecordReader, tag};
+use super::keyframe::{Head, Keyframe, States, decode_index, history};
 use crate::World;
 use crate::store::{Reader, Record};
 use crate::world::{Command, Commands};
@@ -18,11 +19,37 @@ pub struct Summary {
     pub hash: u64,
 }
 
-/// A tick as recorded, or the commands after the last one.
-struct Recorded {
-    offset: u64,
-    is_tick: bool,
-    hash: u64,
+/// What a replay holds, read without playing it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Contents {
+    /// What it amounts to; the hash is the last recorded one.
+    pub summary: Summary,
+    /// Where it can be played from.
+    pub keyframes: Vec<Keyframe>,
+    /// How many records hold evidence.
+    pub evidence: u64,
+}
+
+/// A record that means something here.
+pub(super) enum Step {
+    /// A tick, or the commands after the last one.
+    Tick {
+        offset: u64,
+        is_tick: bool,
+        is_idle: bool,
+        hash: u64,
+    },
+    Keyframe {
+        offset: u64,
+        head: Head,
+    },
+    Parts {
+        offset: u64,
+    },
+    Evidence {
+        offset: u64,
+    },
+    Other,
 }
 
 /// Plays a replay tick by tick, and compares the hash of the complete state after each.
@@ -31,10 +58,25 @@ pub struct Player<R> {
     world: World,
     ticks: u64,
     commands: u64,
+    history: u64,
     /// Whether the record read last is a tick or the tail, so that its payload has commands.
     has_commands: bool,
     had_tail: bool,
     finished: bool,
+    /// Where the last keyframe with a whole save is.
+    base: Option<u64>,
+    states: States,
+    /// Where the index is, once it has been read; and a hash of the keyframes so far.
+    index: u64,
+    seen: u64,
+    /// Whether it went on from a keyframe, and does not know those before.
+    is_resumed: bool,
+}
+
+/// What stands for a list of keyframes: nothing of a file is kept whole.
+fn list(before: u64, keyframe: &Keyframe) -> u64 {
+    let Keyframe { tick, offset, history: past } = keyframe;
+    [tick, offset, past].iter().fold(before, |hash, value| history(hash, &value.to_le_bytes()))
 }
 
 impl<R: Read> Player<R> {
@@ -46,10 +88,10 @@ impl<R: Read> Player<R> {
         let offset = loop {
             match records.next()? {
                 Found::Record { tag: tag::WORLD, offset } => break offset,
-                Found::Record { tag: tag::ANCILLARY.., .. } => {}
-                Found::Record { tag: tag::IDLE | tag::TICK | tag::TAIL, offset } => {
+                Found::Record { tag: tag::KEYFRAME..=tag::INDEX | tag::IDLE | tag::TICK | tag::TAIL, offset } => {
                     return Err(ReplayError::Corrupt { tick: 0, offset, reason: "there is a tick before the world" });
                 }
+                Found::Record { tag: tag::ANCILLARY.., .. } => {}
                 Found::Record { tag, offset } => return Err(ReplayError::UnknownRecord { tick: 0, offset, tag }),
                 Found::Cut => return Err(ReplayError::Truncated { ticks: 0, offset: records.offset() }),
                 Found::End { .. } => {
@@ -62,12 +104,62 @@ impl<R: Read> Player<R> {
         if world.config().tick_rate != records.tick_rate {
             return Err(ReplayError::Corrupt { tick: 0, offset, reason: "its tick rate is not the header's" });
         }
-        Ok(Player { records, world, ticks: 0, commands: 0, has_commands: false, had_tail: false, finished: false })
+        let mut states = States::default();
+        states.resume(&world, offset);
+        let past = world.hash();
+        Ok(Self::begun(records, world, past, (offset, states)))
+    }
+
+    fn begun(records: RecordReader<R>, world: World, history: u64, (base, states): (u64, States)) -> Self {
+        Player {
+            records,
+            world,
+            ticks: 0,
+            commands: 0,
+            history,
+            has_commands: false,
+            had_tail: false,
+            finished: false,
+            base: Some(base),
+            states,
+            index: 0,
+            seen: 0,
+            is_resumed: false,
+        }
+    }
+
+    /// Goes on behind a keyframe that was read.
+    pub(super) fn resumed(records: RecordReader<R>, world: World, head: &Head) -> Self {
+        let mut states = States::default();
+        states.resume(&world, head.base);
+        let mut player = Self::begun(records, world, head.history, (head.base, states));
+        (player.ticks, player.commands, player.is_resumed) = (head.tick, head.commands, true);
+        player
+    }
+
+    /// The payload of the record read last.
+    pub(super) fn payload(&self) -> &[u8] {
+        self.records.payload()
+    }
+
+    /// Counts a tick that was read and is not played.
+    pub(super) fn skip_tick(&mut self) {
+        self.ticks = self.ticks.saturating_add(1);
     }
 
     /// The world as played so far.
     pub fn world(&self) -> &World {
         &self.world
+    }
+
+    /// The same, to go on with alone.
+    pub fn into_world(self) -> World {
+        self.world
+    }
+
+    /// The ticks played so far, from the start of the recording.
+    pub fn ticks(&self) -> u64 {
+        self.ticks
     }
 
     /// The commands before the tick played last, the game's own input among them. Decoded anew at each call: a file
@@ -86,95 +178,267 @@ impl<R: Read> Player<R> {
     /// Errors: the first divergence, or what is wrong with the file, by place. A file cut off gives
     /// [`ReplayError::Truncated`] after its last whole tick.
     pub fn step(&mut self) -> Result<Option<u64>, ReplayError> {
-        while let Some(recorded) = self.read()? {
-            // Each has been decoded once already, by `read`.
-            let tick = self.ticks.saturating_add(1);
-            let decode = |error| ReplayError::Decode { tick, offset: recorded.offset, error };
-            let mut reader = Reader::new(self.records.payload());
-            reader.take::<u64>("hash").map_err(decode)?;
-            let mut index = 0u64;
-            while reader.remaining() > 0 {
-                let command = Command::load(&mut reader, "command").map_err(decode)?;
-                let refused = |error| ReplayError::Refused { tick, index, error: Box::new(error) };
-                self.world.apply(command).map_err(refused)?;
-                index = index.saturating_add(1);
-            }
-            if recorded.is_tick {
-                self.world.step();
+        let hash = self.step_by(World::step)?;
+        self.compare(hash)
+    }
+
+    /// As [`Player::step`], with the tick left to `step`, and its hash not compared: the recorded one, and whether a check stands
+    /// behind it.
+    pub(super) fn step_by(&mut self, step: impl FnOnce(&mut World)) -> Result<Option<(u64, bool)>, ReplayError> {
+        while let Some(read) = self.read()? {
+            let (offset, is_tick, is_idle, hash) = match read {
+                Step::Tick { offset, is_tick, is_idle, hash } => (offset, is_tick, is_idle, hash),
+                Step::Keyframe { offset, head } => {
+                    self.check_keyframe(offset, &head)?;
+                    continue;
+                }
+                Step::Parts { offset } => {
+                    self.check_parts(offset)?;
+                    continue;
+                }
+                Step::Evidence { .. } | Step::Other => continue,
+            };
+            self.carry_out(offset)?;
+            if is_tick {
+                step(&mut self.world);
                 self.ticks = self.ticks.saturating_add(1);
+                return Ok(Some((hash, !is_idle)));
             }
-            let computed = self.world.hash();
-            if computed != recorded.hash {
-                return Err(ReplayError::Diverged { tick: self.ticks, recorded: recorded.hash, computed });
-            }
-            if recorded.is_tick {
-                return Ok(Some(computed));
-            }
+            self.compare(Some((hash, true)))?;
         }
         Ok(None)
+    }
+
+    /// The world's hash, if it is the recorded one.
+    fn compare(&mut self, recorded: Option<(u64, bool)>) -> Result<Option<u64>, ReplayError> {
+        let Some((recorded, checked)) = recorded else { return Ok(None) };
+        let (tick, computed) = (self.ticks, self.world.hash());
+        if computed == recorded {
+            return Ok(Some(computed));
+        }
+        // An idle tick has no check of its own: the next one says whether the file is as it was written.
+        while !checked {
+            match self.records.next().map_err(|error| error.at(tick))? {
+                Found::Record { tag: tag::IDLE, .. } => {}
+                Found::Record { .. } | Found::End { .. } => break,
+                Found::Cut => {
+                    let reason = "a hash differs, and the file ends before a check says whether it was recorded so";
+                    return Err(ReplayError::Corrupt { tick, offset: self.records.offset(), reason });
+                }
+            }
+        }
+        Err(ReplayError::Diverged { tick, recorded, computed })
+    }
+
+    /// Carries out the commands of the record read last; each has been decoded once already, by `read`.
+    fn carry_out(&mut self, offset: u64) -> Result<(), ReplayError> {
+        let tick = self.ticks.saturating_add(1);
+        let decode = |error| ReplayError::Decode { tick, offset, error };
+        let mut reader = Reader::new(self.records.payload());
+        reader.take::<u64>("hash").map_err(decode)?;
+        let mut index = 0u64;
+        while reader.remaining() > 0 {
+            let command = Command::load(&mut reader, "command").map_err(decode)?;
+            let refused = |error| ReplayError::Refused { tick, index, error: Box::new(error) };
+            self.world.apply(command).map_err(refused)?;
+            index = index.saturating_add(1);
+        }
+        Ok(())
+    }
+
+    /// Whether a keyframe holds the world as played, to the byte.
+    fn check_keyframe(&mut self, offset: u64, head: &Head) -> Result<(), ReplayError> {
+        let own = head.base == offset || self.states.base(&self.world) == Some(head.base);
+        let (_, state) = Head::read(self.records.payload()).map_err(|error| ReplayError::Decode {
+            tick: self.ticks,
+            offset,
+            error,
+        })?;
+        if !own || self.states.write(&self.world, offset, head.base) != state {
+            return Err(ReplayError::DivergedKeyframe { tick: self.ticks, offset });
+        }
+        Ok(())
+    }
+
+    /// Whether the parts of the state have the recorded hashes.
+    fn check_parts(&mut self, offset: u64) -> Result<(), ReplayError> {
+        let mut reader = Reader::new(self.records.payload());
+        for part in self.world.hash_parts() {
+            let decode = |error| ReplayError::Decode { tick: self.ticks, offset, error };
+            let recorded = reader.take("part").map_err(decode)?;
+            if recorded != part.hash {
+                let (tick, part, computed) = (self.ticks, part.name, part.hash);
+                return Err(ReplayError::DivergedPart { tick, part, recorded, computed });
+            }
+        }
+        Ok(())
     }
 
     /// Plays the rest.
     pub fn verify(mut self) -> Result<Summary, ReplayError> {
         while self.step()?.is_some() {}
-        Ok(Summary { ticks: self.ticks, commands: self.commands, hash: self.world.hash() })
+        Ok(self.summary())
     }
 
-    /// Reads the rest without playing it: whether the file is whole, and what it amounts to. The hash is the last
-    /// recorded one.
-    pub fn inspect(mut self) -> Result<Summary, ReplayError> {
-        let mut hash = self.world.hash();
-        while let Some(recorded) = self.read()? {
-            hash = recorded.hash;
-            self.ticks = self.ticks.saturating_add(u64::from(recorded.is_tick));
+    /// What it amounts to as far as it was played.
+    pub fn summary(&self) -> Summary {
+        Summary { ticks: self.ticks, commands: self.commands, hash: self.world.hash() }
+    }
+
+    /// Plays up to a keyframe, which must hold the world as played. `each` gets the hash of every tick.
+    pub fn verify_to(&mut self, keyframe: &Keyframe, mut each: impl FnMut(u64)) -> Result<(), ReplayError> {
+        while self.ticks < keyframe.tick {
+            match self.step()? {
+                Some(hash) => each(hash),
+                None => break,
+            }
         }
-        Ok(Summary { ticks: self.ticks, commands: self.commands, hash })
+        loop {
+            match self.read()? {
+                Some(Step::Keyframe { offset, head }) => {
+                    self.check_keyframe(offset, &head)?;
+                    if offset == keyframe.offset {
+                        return Ok(());
+                    }
+                }
+                Some(Step::Parts { offset }) => self.check_parts(offset)?,
+                Some(Step::Evidence { .. } | Step::Other) => {}
+                Some(Step::Tick { offset, .. }) => {
+                    let reason = "there is no keyframe where one is named";
+                    return Err(ReplayError::Corrupt { tick: self.ticks, offset, reason });
+                }
+                None => {
+                    let (tick, offset) = (self.ticks, self.records.offset());
+                    return Err(ReplayError::Corrupt {
+                        tick,
+                        offset,
+                        reason: "there is no keyframe where one is named",
+                    });
+                }
+            }
+        }
     }
 
-    /// Reads the next tick or tail, and its commands to see that they are some; `None` at the end.
-    fn read(&mut self) -> Result<Option<Recorded>, ReplayError> {
-        let recorded = self.read_record().map_err(|error| match error {
+    /// Reads the rest without playing it: whether the file is whole, and what it holds.
+    pub fn inspect(mut self) -> Result<Contents, ReplayError> {
+        let mut hash = self.world.hash();
+        let (mut keyframes, mut evidence) = (Vec::new(), 0u64);
+        while let Some(read) = self.read()? {
+            match read {
+                Step::Tick { is_tick, hash: recorded, .. } => {
+                    hash = recorded;
+                    self.ticks = self.ticks.saturating_add(u64::from(is_tick));
+                }
+                Step::Keyframe { offset, head: Head { tick, history, .. } } => {
+                    keyframes.push(Keyframe { tick, offset, history });
+                }
+                Step::Evidence { .. } => evidence = evidence.saturating_add(1),
+                Step::Parts { .. } | Step::Other => {}
+            }
+        }
+        let summary = Summary { ticks: self.ticks, commands: self.commands, hash };
+        Ok(Contents { summary, keyframes, evidence })
+    }
+
+    /// Reads the next record and everything in it that can be checked without playing; `None` at the end.
+    pub(super) fn read(&mut self) -> Result<Option<Step>, ReplayError> {
+        let read = self.read_record().map_err(|error| match error {
             // What a file that was cut off holds is whole ticks; everything else is wrong in the tick being read.
             ReplayError::Truncated { .. } => error.at(self.ticks),
             error => error.at(self.ticks.saturating_add(1)),
         })?;
-        self.has_commands = recorded.is_some();
-        let Some(recorded) = recorded else { return Ok(None) };
+        self.has_commands = matches!(read, Some(Step::Tick { .. }));
+        let Some(Step::Tick { offset, is_tick, is_idle, .. }) = read else { return Ok(read) };
         let tick = self.ticks.saturating_add(1);
-        let decode = |error| ReplayError::Decode { tick, offset: recorded.offset, error };
+        let decode = |error| ReplayError::Decode { tick, offset, error };
         let mut reader = Reader::new(self.records.payload());
         let hash = reader.take("hash").map_err(decode)?;
         while reader.remaining() > 0 {
             Command::load(&mut reader, "command").map_err(decode)?;
             self.commands = self.commands.saturating_add(1);
         }
-        Ok(Some(Recorded { hash, ..recorded }))
+        self.history = history(self.history, self.records.payload());
+        Ok(Some(Step::Tick { offset, is_tick, is_idle, hash }))
     }
 
-    fn read_record(&mut self) -> Result<Option<Recorded>, ReplayError> {
+    fn read_record(&mut self) -> Result<Option<Step>, ReplayError> {
         let corrupt = |offset, reason| Err(ReplayError::Corrupt { tick: 0, offset, reason });
         while !self.finished {
+            let chain = self.records.chain();
             match self.records.next()? {
                 Found::Record { tag: tag::IDLE | tag::TICK | tag::TAIL, offset } if self.had_tail => {
                     return corrupt(offset, "there is a tick after the tail");
                 }
-                Found::Record { tag: tag::IDLE | tag::TICK, offset } => {
-                    return Ok(Some(Recorded { offset, is_tick: true, hash: 0 }));
+                Found::Record { tag: tag::IDLE | tag::TICK | tag::TAIL, offset } if self.index > 0 => {
+                    return corrupt(offset, "there is a tick after the index");
+                }
+                Found::Record { tag: tag @ (tag::IDLE | tag::TICK), offset } => {
+                    return Ok(Some(Step::Tick { offset, is_tick: true, is_idle: tag == tag::IDLE, hash: 0 }));
                 }
                 Found::Record { tag: tag::TAIL, offset } => {
                     self.had_tail = true;
-                    return Ok(Some(Recorded { offset, is_tick: false, hash: 0 }));
+                    return Ok(Some(Step::Tick { offset, is_tick: false, is_idle: false, hash: 0 }));
                 }
-                Found::Record { tag: tag::ANCILLARY.., .. } => {}
+                Found::Record { tag: tag::KEYFRAME, offset } => return self.read_keyframe(offset, chain).map(Some),
+                Found::Record { tag: tag::PARTS, offset } if self.records.payload().len() != 72 => {
+                    return corrupt(offset, "the parts are not nine hashes");
+                }
+                Found::Record { tag: tag::PARTS, offset } => return Ok(Some(Step::Parts { offset })),
+                Found::Record { tag: tag::EVIDENCE, offset } => {
+                    let decoded = super::Evidence::decode(self.records.payload());
+                    decoded.map_err(|error| ReplayError::Decode { tick: 0, offset, error })?;
+                    return Ok(Some(Step::Evidence { offset }));
+                }
+                Found::Record { tag: tag::INDEX, offset } => {
+                    self.read_index(offset, chain)?;
+                    return Ok(Some(Step::Other));
+                }
+                Found::Record { tag: tag::ANCILLARY.., .. } => return Ok(Some(Step::Other)),
                 Found::Record { tag: tag::WORLD, offset } => return corrupt(offset, "there is a second world"),
                 Found::Record { tag, offset } => return Err(ReplayError::UnknownRecord { tick: 0, offset, tag }),
                 Found::Cut => return Err(ReplayError::Truncated { ticks: 0, offset: self.records.offset() }),
-                Found::End { ticks } if ticks != self.ticks => {
+                Found::End { ticks, .. } if ticks != self.ticks => {
                     return corrupt(self.records.offset(), "the end counts other ticks");
+                }
+                Found::End { index, .. } if index != self.index => {
+                    return corrupt(self.records.offset(), "the end names another index");
                 }
                 Found::End { .. } => self.finished = true,
             }
         }
         Ok(None)
+    }
+
+    fn read_keyframe(&mut self, offset: u64, chain: u64) -> Result<Step, ReplayError> {
+        let decode = |error| ReplayError::Decode { tick: 0, offset, error };
+        let (head, _) = Head::read(self.records.payload()).map_err(decode)?;
+        let expected =
+            Head { tick: self.ticks, commands: self.commands, history: self.history, chain, base: head.base };
+        if head != expected || self.had_tail {
+            return Err(ReplayError::Corrupt { tick: 0, offset, reason: "the keyframe is not of this place" });
+        }
+        if head.base == offset {
+            self.base = Some(offset);
+        } else if self.base != Some(head.base) {
+            return Err(ReplayError::Corrupt {
+                tick: 0,
+                offset,
+                reason: "the keyframe refers to another one than the last whole one",
+            });
+        }
+        self.seen = list(self.seen, &Keyframe { tick: head.tick, offset, history: head.history });
+        Ok(Step::Keyframe { offset, head })
+    }
+
+    /// An index must list the keyframes before it, whole and in order; of a player that went on from one it is not known.
+    fn read_index(&mut self, offset: u64, chain: u64) -> Result<(), ReplayError> {
+        let decode = |error| ReplayError::Decode { tick: 0, offset, error };
+        let (before, keyframes) = decode_index(self.records.payload()).map_err(decode)?;
+        let listed = keyframes.iter().fold(0, list);
+        if before != chain || self.index > 0 || !self.is_resumed && listed != self.seen {
+            return Err(ReplayError::Corrupt { tick: 0, offset, reason: "the index does not list the keyframes" });
+        }
+        self.index = offset;
+        Ok(())
     }
 }

@@ -1,10 +1,31 @@
 //! Recording: a world, and a file of everything that is done to it.
 
+use super::evidence::Evidence;
+use super::flight::Flight;
 use super::format::{RecordWriter, tag};
+use super::keyframe::{Head, Keyframe, States, encode_index, history};
 use crate::World;
-use crate::store::Record;
+use crate::store::{Record, put};
 use crate::world::{Command, CommandError, Commands, Reply};
 use std::io::{self, Write};
+
+/// What a recording holds besides commands and hashes. The default is for games that are recorded all the time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recording {
+    /// So many seconds lie between keyframes, from which it can be played without what comes before; 0 for none. 60 by default.
+    pub keyframe_seconds: u32,
+    /// So many ticks lie between hashes of the state's parts; 0 for none. 60 by default.
+    pub parts_ticks: u32,
+    /// Of so many last ticks evidence is held in memory, for [`Recorder::alarm`]; 0, the default, for none: it makes a tick cost
+    /// several times as much.
+    pub flight_ticks: u32,
+}
+
+impl Default for Recording {
+    fn default() -> Self {
+        Recording { keyframe_seconds: 60, parts_ticks: 60, flight_ticks: 0 }
+    }
+}
 
 /// A world whose commands and ticks are recorded.
 ///
@@ -33,6 +54,15 @@ pub struct Recorder<W> {
     /// The commands since the last tick, encoded after room for a hash.
     pending: Vec<u8>,
     ticks: u64,
+    commands: u64,
+    history: u64,
+    options: Recording,
+    states: States,
+    keyframes: Vec<Keyframe>,
+    flight: Option<Flight>,
+    /// The first tick at which memory did not hold what it had been given.
+    fault: Option<u64>,
+    scratch: Vec<u8>,
     /// The first error of the destination; nothing is written after it.
     error: Option<io::Error>,
 }
@@ -45,9 +75,31 @@ impl<W: Write> Recorder<W> {
     ///
     /// `out` gets a small write per tick: give it a `BufWriter`. Errors: those of writing.
     pub fn new(world: World, out: W) -> io::Result<Self> {
+        Recorder::with(world, out, Recording::default())
+    }
+
+    /// As [`Recorder::new`], and says what is recorded besides commands and hashes.
+    pub fn with(world: World, out: W, options: Recording) -> io::Result<Self> {
         let mut writer = RecordWriter::new(out, world.config().tick_rate)?;
+        let (place, _) = writer.place();
         writer.record(tag::WORLD, &world.save())?;
-        Ok(Recorder { world, writer, pending: vec![0; HASH], ticks: 0, error: None })
+        let mut states = States::default();
+        states.resume(&world, place);
+        Ok(Recorder {
+            history: world.hash(),
+            world,
+            writer,
+            pending: vec![0; HASH],
+            ticks: 0,
+            commands: 0,
+            options,
+            states,
+            keyframes: Vec::new(),
+            flight: (options.flight_ticks > 0).then(|| Flight::new(options.flight_ticks)),
+            fault: None,
+            scratch: Vec::new(),
+            error: None,
+        })
     }
 
     /// The world, to look at.
@@ -60,18 +112,94 @@ impl<W: Write> Recorder<W> {
     /// Never fails: where writing does, the simulation goes on, and [`Recorder::error`] and [`Recorder::finish`]
     /// say so.
     pub fn step(&mut self) {
-        self.world.step();
+        match &mut self.flight {
+            Some(flight) => flight.step(&mut self.world),
+            None => self.world.step(),
+        }
         self.ticks = self.ticks.saturating_add(1);
         self.write(if self.pending.len() == HASH { tag::IDLE } else { tag::TICK });
+        let due = |every: u64| self.ticks.checked_rem(every) == Some(0);
+        let rate = u64::from(self.world.config().tick_rate);
+        let keyframe = due(u64::from(self.options.keyframe_seconds).saturating_mul(rate));
+        if keyframe || due(self.options.parts_ticks.into()) {
+            self.write_parts(keyframe);
+        }
+        if keyframe && self.fault.is_none() {
+            self.write_keyframe();
+        }
     }
 
     /// Writes what happened since the last record under `tag`.
     fn write(&mut self, tag: u8) {
         self.pending[..HASH].copy_from_slice(&self.world.hash().to_le_bytes());
-        if self.error.is_none() {
-            self.error = self.writer.record(tag, &self.pending).err();
-        }
+        self.history = history(self.history, &self.pending);
+        let pending = core::mem::take(&mut self.pending);
+        self.record(tag, &pending);
+        self.pending = pending;
         self.pending.truncate(HASH);
+    }
+
+    fn record(&mut self, tag: u8, payload: &[u8]) {
+        if self.error.is_none() {
+            self.error = self.writer.record(tag, payload).err();
+        }
+    }
+
+    /// Writes the hashes of the state's parts; at keyframes as memory holds them now, and an alarm if that is not what it was given.
+    fn write_parts(&mut self, afresh: bool) {
+        let kept = self.world.hash_parts();
+        let parts = if afresh { self.world.hash_parts_afresh() } else { kept };
+        let mut payload = core::mem::take(&mut self.scratch);
+        payload.clear();
+        for part in &parts {
+            put(&mut payload, part.hash);
+        }
+        self.record(tag::PARTS, &payload);
+        self.scratch = payload;
+        if parts != kept && self.fault.is_none() {
+            self.fault = Some(self.world.tick());
+            let evidence = Evidence::of_state(&self.world).encode();
+            self.record(tag::EVIDENCE, &evidence);
+        }
+    }
+
+    fn write_keyframe(&mut self) {
+        let (offset, chain) = self.writer.place();
+        let base = self.states.base(&self.world).unwrap_or(offset);
+        let head = Head { tick: self.ticks, commands: self.commands, history: self.history, chain, base };
+        let mut payload = core::mem::take(&mut self.scratch);
+        payload.clear();
+        head.write(&mut payload);
+        payload.extend_from_slice(self.states.write(&self.world, offset, base));
+        self.record(tag::KEYFRAME, &payload);
+        self.scratch = payload;
+        if self.error.is_none() {
+            self.keyframes.push(Keyframe { tick: self.ticks, offset, history: self.history });
+        }
+    }
+
+    /// An alarm rang: another machine has another hash at this tick of the world (that after its step). Appends what is held of
+    /// the tick and of the one before. Whether it is still held; without [`Recording::flight_ticks`] nothing is.
+    pub fn alarm(&mut self, tick: u64) -> bool {
+        let Some(flight) = &self.flight else { return false };
+        let of = |tick: u64| flight.evidence(tick).map(Evidence::encode);
+        let (before, at) = (tick.checked_sub(1).and_then(of), of(tick));
+        let held = at.is_some();
+        for evidence in [before, at].into_iter().flatten() {
+            self.record(tag::EVIDENCE, &evidence);
+        }
+        held
+    }
+
+    /// What is held of the last ticks.
+    pub fn flight(&self) -> Option<&Flight> {
+        self.flight.as_ref()
+    }
+
+    /// The first tick of the world at which memory was seen to hold something else than it was given. Looked for at keyframes; from
+    /// then on there are none.
+    pub fn fault(&self) -> Option<u64> {
+        self.fault
     }
 
     /// The first error of writing, if there was one; the file ends there.
@@ -84,9 +212,16 @@ impl<W: Write> Recorder<W> {
         if self.pending.len() > HASH {
             self.write(tag::TAIL);
         }
+        let mut place = 0;
+        if !self.keyframes.is_empty() && self.error.is_none() {
+            let (offset, chain) = self.writer.place();
+            place = offset;
+            let index = encode_index(chain, &self.keyframes);
+            self.record(tag::INDEX, &index);
+        }
         match self.error {
             Some(error) => Err(error),
-            None => self.writer.end(self.ticks),
+            None => self.writer.end(self.ticks, place),
         }
     }
 }
@@ -98,6 +233,8 @@ impl<W: Write> Commands for Recorder<W> {
         let reply = self.world.apply(command);
         if reply.is_err() {
             self.pending.truncate(length);
+        } else {
+            self.commands = self.commands.saturating_add(1);
         }
         reply
     }
