@@ -201,8 +201,8 @@
 //! | lockstep without checksums | 0 | 3 … 6 | the same |
 //!
 //! With a window of 1 ggrs predicts nothing but the very first tick, and yet saves every state, so checksums are compared. With 0 it
-//! saves none and compares none. A rollback of eight ticks costs nine steps in one frame: [the report](https://docs.rs/crate/tamias2d/latest/source/benches/report/README.md)
-//! says how many a frame has room for. `lockstep.advance` is told by the session which of these it is; the game does not change.
+//! saves none and compares none. A rollback of eight ticks costs nine steps in one frame: the report
+//! (`benches/report/README.md`) says how many a frame has room for. `lockstep.advance` is told by the session which of these it is; the game does not change.
 //!
 //! ## Sounds and other things that happen once
 //!
