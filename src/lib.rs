@@ -47,13 +47,13 @@ mod store;
 mod world;
 
 pub use body::{Attractor, BodyDef, BodyError, BodyKind};
-pub use contact::{Collision, Event, EventKind, Pace};
+pub use contact::{Collision, Event, EventId, EventKind, Pace};
 pub use geom::{Aabb, Rot, Vec2};
 pub use num::{
     Acceleration, Angle, AngularImpulse, AngularVelocity, Damping, Density, Energy, Force, Friction, Impulse, Inertia,
     Length, Mass, Mu, NumError, Radians, RangeError, Restitution, Time, Torque, Velocity,
 };
-pub use rollback::{Rollback, RollbackError};
+pub use rollback::{EventLog, Rollback, RollbackError, Sorted, Told};
 pub use shape::{ColliderDef, Filter, Shape, ShapeError};
 pub use snapshot::{Frame, FrameError, HashPart, LAW, SAVE_VERSION};
 pub use solver::{Impact, ImpactError, Striker, impact};

@@ -1,8 +1,11 @@
 //! The last ticks of a world, to go back to: what a rollback game saves each tick.
 
+mod log;
+
 use crate::World;
 use crate::snapshot::{Digests, Frame, Tables};
 use core::fmt;
+pub use log::{EventLog, Sorted, Told};
 
 /// A ring of frames, and the tables that belong to them: one copy for each version of the tables, and a version begins when a command has
 /// changed one. So bodies, colliders and attractors that were created after a save are gone when that is restored, those destroyed

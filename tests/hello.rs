@@ -19,7 +19,8 @@ fn bytes_are_read_as_they_were_written() {
     assert_eq!((law, save, replay, game, tick_rate, tick), (LAW, SAVE_VERSION, REPLAY_VERSION, 7, 60, 0));
     let packet = hello.encode();
     assert_eq!(packet.len(), Hello::LENGTH);
-    let first: Vec<u8> = [1, LAW, SAVE_VERSION, REPLAY_VERSION].iter().flat_map(|number| number.to_le_bytes()).collect();
+    let first: Vec<u8> =
+        [1, LAW, SAVE_VERSION, REPLAY_VERSION].iter().flat_map(|number| number.to_le_bytes()).collect();
     assert_eq!(packet[..24], [b"TAMIAS-H".as_slice(), &first].concat());
     assert_eq!(Hello::decode(&packet), Ok(hello));
     assert_eq!(hello.check(&hello), Ok(()));

@@ -8,7 +8,7 @@ use proptest::prelude::{ProptestConfig, any, prop_assert_eq, proptest};
 use std::cell::RefCell;
 use std::io::{self, Write};
 use std::rc::Rc;
-use tamias2d::replay::{Player, REPLAY_VERSION, Recorder, ReplayError, Summary};
+use tamias2d::replay::{Player, REPLAY_VERSION, Recorder, Recording, ReplayError, Summary, read_index};
 use tamias2d::{
     Angle, Attractor, AttractorId, BodyDef, BodyId, BodyKind, ColliderId, Command, CommandError, Commands, DecodeError,
     Filter, LAW, Vec2, World, WorldDef,
@@ -885,4 +885,125 @@ fn a_tick_of_very_many_commands_is_decoded_one_by_one() {
     assert!(largest <= file.len() * 9 / 8, "{largest} bytes for a file of {}", file.len());
     let player = Player::new(file.as_slice()).expect("as recorded");
     assert_eq!(player.inspect().expect("as recorded").summary.commands, 100_000);
+}
+
+/// A small recording with all that a recording can have: keyframes by whole saves and by reference, parts, evidence, an index.
+fn rich() -> Vec<u8> {
+    let mut world = World::new(&WorldDef { tick_rate: 15, ..WorldDef::default() }).expect("accepted");
+    let body = world.create_body(&BodyDef { velocity: vel(1.0, 2.0), ..BodyDef::default() }).expect("accepted");
+    let options = Recording { keyframe_seconds: 1, parts_ticks: 6, flight_ticks: 2 };
+    let mut game = Recorder::with(world, Vec::new(), options).expect("it can be written");
+    for tick in 1..=48 {
+        if tick == 20 {
+            game.set_user_data(body, 5).expect("accepted");
+        }
+        game.step();
+        if tick == 33 {
+            assert!(game.alarm(33) && !game.alarm(30));
+        }
+    }
+    game.set_user_data(body, 6).expect("accepted");
+    assert_eq!(game.fault(), None);
+    game.finish().expect("it can be written")
+}
+
+#[test]
+fn every_truncation_and_every_flipped_bit_of_keyframes_parts_and_evidence_is_detected() {
+    let file = rich();
+    let contents = Player::new(file.as_slice()).expect("a replay").inspect().expect("whole");
+    assert_eq!((contents.keyframes.len(), contents.evidence), (3, 3));
+    assert_eq!(verify(&file).expect("it plays"), contents.summary);
+    println!("{} bytes", file.len());
+    for length in 0..file.len() {
+        let read = Player::new(&file[..length]).and_then(Player::inspect);
+        assert!(read.is_err(), "cut at {length}");
+    }
+    let whole = |bytes: &[u8]| Player::new(bytes).and_then(Player::inspect).map(drop);
+    let mut bytes = file.clone();
+    for at in 0..file.len() {
+        for bit in 0..8 {
+            bytes[at] ^= 1 << bit;
+            let (result, _, largest) = measure(|| whole(&bytes));
+            assert!(result.is_err(), "byte {at} bit {bit}");
+            assert!(largest <= file.len() * 2, "byte {at} bit {bit} allocates {largest}");
+            if bit == at % 8 {
+                assert!(verify(&bytes).is_err(), "byte {at} bit {bit}");
+                // Random access: the index, and a keyframe that it names, are right or refused.
+                let mut input = io::Cursor::new(bytes.as_slice());
+                for keyframe in read_index(&mut input).unwrap_or_default() {
+                    assert!(contents.keyframes.contains(&keyframe), "byte {at} bit {bit}");
+                    if let Ok(player) = Player::at(io::Cursor::new(bytes.as_slice()), &keyframe) {
+                        let sound = Player::at(io::Cursor::new(file.as_slice()), &keyframe).expect("a keyframe");
+                        assert_eq!(player.world().hash(), sound.world().hash());
+                    }
+                }
+            }
+            bytes[at] ^= 1 << bit;
+        }
+    }
+}
+
+/// At 60 ticks a second and 100 bodies that do nothing, with parts and keyframes.
+#[test]
+fn an_idle_game_records_less_than_a_kilobyte_a_second() {
+    let mut world = world(0.0, -9.8);
+    world
+        .create_body(&BodyDef {
+            kind: BodyKind::Static,
+            position: at(0.0, -1.0),
+            colliders: vec![common::rectangle(200.0, 2.0)],
+            ..BodyDef::default()
+        })
+        .expect("accepted");
+    for i in 1..100 {
+        // Stacks of four: each body touches two others.
+        let position = at(f64::from(i / 4) * 3.0 - 40.0, f64::from(i % 4) + 0.5);
+        world
+            .create_body(&BodyDef { position, colliders: vec![common::rectangle(1.0, 1.0)], ..BodyDef::default() })
+            .expect("accepted");
+    }
+    run(&mut world, 60);
+    let tape = Tape::new(usize::MAX);
+    let mut game = Recorder::new(world, tape.clone()).expect("it can be written");
+    let before = tape.len();
+    const SECONDS: usize = 120;
+    for _ in 0..SECONDS * 60 {
+        game.step();
+    }
+    let rate = (tape.len() - before) as f64 / SECONDS as f64;
+    println!("{rate:.1} bytes a second");
+    assert!(rate <= 1000.0, "{rate} bytes a second");
+    drop(game.finish().expect("it can be written"));
+    let file = tape.bytes.borrow().clone();
+    assert_eq!(Player::new(file.as_slice()).expect("a replay").inspect().expect("whole").keyframes.len(), 2);
+}
+
+#[test]
+fn keyframes_that_hold_another_world_are_found_by_playing() {
+    // A keyframe of a world that was not played, in a file that is whole.
+    let mut world = start();
+    world.step();
+    let first = world.hash();
+    let mut other = world.clone();
+    other.set_user_data(TWO, 77).expect("accepted");
+    let keyframe = |forge: Forge, state: &World| {
+        let history = XxHash3_64::oneshot_with_seed(start().hash(), &first.to_le_bytes());
+        let (offset, chain) = (forge.bytes.len() as u64, forge.chain);
+        let mut payload = Vec::new();
+        for value in [1, 0, history, chain, offset] {
+            payload.extend(value.to_le_bytes());
+        }
+        payload.extend(state.save());
+        forge.record(0x80, &payload)
+    };
+    let file = |state: &World| keyframe(Forge::new(60).world(&start()).idle(first), state).end(1);
+    assert_eq!(verify(&file(&world)).expect("it plays").ticks, 1);
+    let found = error(&file(&other));
+    assert!(matches!(found, ReplayError::DivergedKeyframe { tick: 1, .. }), "{found:?}");
+    // Parts as well.
+    let mut parts: Vec<u8> = world.hash_parts().iter().flat_map(|part| part.hash.to_le_bytes()).collect();
+    let with_parts = |parts: &[u8]| Forge::new(60).world(&start()).idle(first).record(0x81, parts).end(1);
+    assert_eq!(verify(&with_parts(&parts)).expect("it plays").ticks, 1);
+    parts[8] ^= 1;
+    assert!(matches!(error(&with_parts(&parts)), ReplayError::DivergedPart { tick: 1, part: "bodies", .. }));
 }

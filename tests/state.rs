@@ -285,8 +285,10 @@ fn what_is_no_save_is_refused_in_these_words() {
         bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
         bytes
     };
-    assert_eq!(text(&changed(8, 1)), "saved in format version 1, this build reads version 4");
-    assert_eq!(text(&changed(12, 7)), "saved under arithmetic law 7, this build computes by law 5");
+    let version = format!("this build reads version {SAVE_VERSION}: load it with a build of version 1");
+    assert_eq!(text(&changed(8, 1)), format!("saved in format version 1, {version}"));
+    let law = format!("this build computes by law {LAW}: continue it with a build of law 77");
+    assert_eq!(text(&changed(12, 77)), format!("saved under arithmetic law 77, {law}"));
     let mut longer = save.clone();
     longer.push(0);
     assert_eq!(text(&longer), format!("unexpected bytes after the end at byte {}", save.len()));
@@ -294,7 +296,9 @@ fn what_is_no_save_is_refused_in_these_words() {
     let last = bytes.len() - 8;
     bytes[last..].copy_from_slice(&[0xab; 8]);
     let hash = small().hash();
-    assert_eq!(text(&bytes), format!("the state read has hash {hash:016x}, saved was abababababababab"));
+    let told = text(&bytes);
+    let other = format!("the state read has hash {hash:016x}, saved was abababababababab");
+    assert_eq!(told, format!("{other}: the bytes were changed on their way, fetch them again"));
     // The tick rate and the substeps are checked even where the hash fits.
     for (at, value, reason) in [
         (16, 14, "breaks an invariant of worlds"),

@@ -59,6 +59,12 @@ macro_rules! table {
                 hasher.finish()
             }
 
+            /// How many bytes of memory the columns use.
+            pub(crate) fn memory(&self) -> usize {
+                let Motion { $($column),* } = self;
+                0usize $( .saturating_add(size_of_val($column.bits())) )*
+            }
+
             /// Copies the columns of a table.
             pub(crate) fn copy_from(&mut self, bodies: &Bodies) {
                 let Bodies { cold: _, rest: _, $($column),* } = bodies;

@@ -220,6 +220,12 @@ impl Rest {
         self.grow(slots);
     }
 
+    /// The numbers and how many sleep as memory has them, for faults.
+    #[cfg(test)]
+    pub(crate) fn memory(&mut self) -> (&mut Vec<u32>, &mut u32) {
+        (&mut self.ticks, &mut self.sleepers)
+    }
+
     /// XXH3-64 of the numbers' little-endian bytes.
     pub(crate) fn hash(&self) -> u64 {
         crate::store::hash_numbers(&self.ticks)

@@ -1,5 +1,6 @@
 //! Commands, their help, and how they end.
 
+mod diff;
 mod golden;
 mod info;
 mod run;
@@ -24,6 +25,7 @@ Examples:
   tamias2d run orbit.json --ticks 600 --every 60     where its bodies are, each second
   tamias2d run orbit.json --ticks 600 --record orbit.replay
   tamias2d verify orbit.replay                       on any machine: the same hashes at every tick
+  tamias2d diff mine.replay theirs.replay            where two recordings of a game part, and in what
 
 Exit status: 0 ok; 1 diverged, failed or truncated; 2 wrong usage, unreadable, or bytes after the end."
 )]
@@ -36,6 +38,7 @@ struct Cli {
 enum Command {
     Run(run::Run),
     Verify(verify::Verify),
+    Diff(diff::Diff),
     Info(info::Info),
     Scenes(golden::Scenes),
     Record(golden::Record),
@@ -99,7 +102,9 @@ pub(crate) fn say(message: &str) {
 /// What the parser has to say, in one line: its own text up to the usage, which `--help` shows in full.
 fn usage(error: &clap::Error) -> Failure {
     if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        return Failure::usage("a command is missing: run, verify, info, scenes or record; see `tamias2d --help`");
+        return Failure::usage(
+            "a command is missing: run, verify, diff, info, scenes or record; see `tamias2d --help`",
+        );
     }
     let text = error.to_string();
     let lines: Vec<&str> = text
@@ -117,6 +122,7 @@ fn execute(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run(run) => run.execute(),
         Command::Verify(verify) => verify.execute(),
+        Command::Diff(diff) => diff.execute(),
         Command::Info(info) => info.execute(),
         Command::Scenes(scenes) => scenes.execute(),
         Command::Record(record) => record.execute(),

@@ -7,12 +7,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
-use tamias2d::replay::{Player, ReplayError, Summary};
+use tamias2d::replay::{Player, ReplayError, Segment, Summary, recompute};
 
 /// Replay recordings and compare the hash of every tick.
 ///
-/// Names the file and the first bad tick of a replay that does not give the recorded hashes. Several files are
-/// verified in parallel.
+/// Names the file and the first bad tick of a replay that does not give the recorded hashes. Several files, and the
+/// segments between a long one's keyframes, are verified side by side.
+///
+/// With --evidence one file's first bad tick, or the tick given by --tick, is computed once more, and what memory holds
+/// before it, after each stage and after it goes to a file, for `tamias2d diff`: to see on two machines where they part.
 #[derive(clap::Args)]
 pub(crate) struct Verify {
     /// Replay files, and folders in which every *.replay file counts
@@ -24,6 +27,15 @@ pub(crate) struct Verify {
     /// Print a line `FILE TICK HASH` for every tick as well, to compare two machines by
     #[arg(long)]
     hashes: bool,
+    /// How many segments are verified at a time; as many as there are cores if left out
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    jobs: Option<u32>,
+    /// Write evidence of the first bad tick to this file
+    #[arg(long, value_name = "OUT", conflicts_with = "hashes")]
+    evidence: Option<PathBuf>,
+    /// The tick of which to write evidence, bad or not, from 1 on; nothing else is verified then
+    #[arg(long, value_name = "T", requires = "evidence", value_parser = clap::value_parser!(u64).range(1..))]
+    tick: Option<u64>,
 }
 
 /// A file's result.
@@ -36,6 +48,17 @@ struct Verified {
     hashes: Vec<u64>,
 }
 
+/// A segment's result.
+struct Played {
+    file: usize,
+    start: u64,
+    result: Result<Summary, ReplayError>,
+    ticks: u64,
+    began: Instant,
+    ended: Instant,
+    hashes: Vec<u64>,
+}
+
 impl Verify {
     pub(crate) fn execute(self) -> Result<(), Failure> {
         let mut files = Vec::new();
@@ -45,48 +68,116 @@ impl Verify {
         if files.is_empty() {
             return Err(Failure::usage("there is no *.replay file in what was given"));
         }
-        let total = files.iter().filter_map(|path| path.metadata().ok()).map(|meta| meta.len()).sum();
-        let bar = progress(total, "bytes");
-        let next = AtomicUsize::new(0);
-        let results = Mutex::new(Vec::new());
-        let workers = std::thread::available_parallelism().map_or(1, |n| n.get()).min(files.len());
-        std::thread::scope(|scope| {
-            for _ in 0..workers {
-                scope.spawn(|| {
-                    while let Some(path) = files.get(next.fetch_add(1, Ordering::Relaxed)) {
-                        let verified = self.verify(path, &bar);
-                        results.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(verified);
-                    }
-                });
-            }
-        });
-        bar.finish_and_clear();
-        let mut results = results.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
-        results.sort_by(|a, b| a.path.cmp(&b.path));
+        if let (Some(_), [_, _, ..]) = (&self.evidence, files.as_slice()) {
+            return Err(Failure::usage("--evidence is of one replay, and there are several"));
+        }
+        if let (Some(tick), Some(out), [path]) = (self.tick, &self.evidence, files.as_slice()) {
+            return self.write_evidence(path, tick, out);
+        }
+        let results = self.verify(&files);
         // That nobody reads the output to its end must not silence the alarm.
         let printed = if self.json { print_json(&results) } else { self.print(&results) };
+        if let (Some(out), [Verified { path, result, .. }]) = (&self.evidence, results.as_slice()) {
+            match result.as_ref().err().and_then(diverged_tick) {
+                Some(tick) => self.write_evidence(path, tick, out)?,
+                None if result.is_ok() => {
+                    say(&format!(
+                        "{}: no tick is bad, so {} was not written; --tick T asks for one",
+                        path.display(),
+                        out.display()
+                    ));
+                }
+                None => {}
+            }
+        }
         conclude(&results)?;
         Ok(printed?)
     }
 
-    fn verify(&self, path: &Path, bar: &indicatif::ProgressBar) -> Verified {
-        let start = Instant::now();
-        let mut hashes = Vec::new();
-        let mut ticks = 0;
-        let result = File::open(path).map_err(ReplayError::Io).and_then(|file| {
-            let mut player = Player::new(BufReader::new(bar.wrap_read(file)))?;
-            if self.hashes {
-                hashes.push(player.world().hash());
+    /// Writes what this build makes of a tick.
+    fn write_evidence(&self, path: &Path, tick: u64, out: &Path) -> Result<(), Failure> {
+        if let (Ok(replay), Ok(out)) = (std::fs::canonicalize(path), std::fs::canonicalize(out)) {
+            if replay == out {
+                return Err(Failure::usage(format_args!("{}: is the replay itself", out.display())));
             }
-            while let Some(hash) = player.step()? {
+        }
+        let mut file = open_file(path)?;
+        let evidence = recompute(&mut file, tick).map_err(|error| failure(path, &error))?;
+        let bytes = evidence.encode();
+        std::fs::write(out, &bytes).map_err(|error| Failure::usage(format_args!("{}: {error}", out.display())))?;
+        if !self.json {
+            let (out, build, hash) = (out.display(), evidence.build(), evidence.hash());
+            let mut stdout = std::io::stdout().lock();
+            writeln!(stdout, "evidence of tick {tick}, hash {hash:016x} here ({build}): {out}, {} bytes", bytes.len())?;
+        }
+        Ok(())
+    }
+
+    /// All files, each split at its keyframes, on as many threads as wanted. Each thread reads its segment by itself, so no more is in
+    /// memory than a world and a record for each.
+    fn verify(&self, files: &[PathBuf]) -> Vec<Verified> {
+        let total = files.iter().filter_map(|path| path.metadata().ok()).map(|meta| meta.len()).sum();
+        let bar = progress(total, "bytes");
+        let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+        let jobs = self.jobs.map_or(cores, |jobs| jobs as usize);
+        // A file that is not whole is played from its beginning, up to where it is not.
+        let whole = |path: &PathBuf| open(path).ok().and_then(|player| player.inspect().ok());
+        let split = |path: &PathBuf| whole(path).map_or(vec![WHOLE], |contents| Segment::of(&contents));
+        let segments: Vec<Vec<Segment>> = side_by_side(jobs, files.len(), |at| split(&files[at]));
+        let work: Vec<(usize, Segment)> = segments
+            .into_iter()
+            .enumerate()
+            .flat_map(|(file, of)| of.into_iter().map(move |one| (file, one)))
+            .collect();
+        let mut played = side_by_side(jobs, work.len(), |at| {
+            let (file, segment) = work[at];
+            self.play(file, &files[file], segment, &bar)
+        });
+        bar.finish_and_clear();
+        played.sort_by_key(|one| (one.file, one.start));
+        let mut results: Vec<Verified> = Vec::new();
+        let mut begun = None;
+        for one in played {
+            let same = begun.is_some_and(|(file, _)| file == one.file);
+            let first = if same { begun.map_or(one.began, |(_, first)| first) } else { one.began };
+            begun = Some((one.file, first.min(one.began)));
+            match results.last_mut().filter(|_| same) {
+                // The first error is a file's; what comes after began from what it recorded.
+                Some(file) if file.result.is_err() => {}
+                Some(file) => {
+                    file.result = one.result;
+                    file.ticks += one.ticks;
+                    file.time = file.time.max(one.ended - first);
+                    file.hashes.extend(one.hashes);
+                }
+                None => results.push(Verified {
+                    path: files[one.file].clone(),
+                    result: one.result,
+                    ticks: one.ticks,
+                    time: one.ended - one.began,
+                    hashes: one.hashes,
+                }),
+            }
+        }
+        results.sort_by(|a, b| a.path.cmp(&b.path));
+        results
+    }
+
+    fn play(&self, file: usize, path: &Path, segment: Segment, bar: &indicatif::ProgressBar) -> Played {
+        let began = Instant::now();
+        let (mut hashes, mut ticks) = (Vec::new(), 0);
+        if self.hashes && segment.from.is_none() {
+            hashes.extend(open(path).map(|player| player.world().hash()));
+        }
+        let result = File::open(path).map_err(ReplayError::Io).and_then(|file| {
+            segment.verify(BufReader::new(bar.wrap_read(file)), |hash| {
                 ticks += 1;
                 if self.hashes {
                     hashes.push(hash);
                 }
-            }
-            player.verify()
+            })
         });
-        Verified { path: path.into(), result, ticks, time: start.elapsed(), hashes }
+        Played { file, start: segment.start(), result, ticks, began, ended: Instant::now(), hashes }
     }
 
     fn print(&self, results: &[Verified]) -> std::io::Result<()> {
@@ -103,6 +194,32 @@ impl Verify {
         }
         out.flush()
     }
+}
+
+/// A recording in one piece.
+const WHOLE: Segment = Segment { from: None, to: None };
+
+/// The results of a number of jobs, so many at a time, in order.
+fn side_by_side<T: Send>(jobs: usize, count: usize, job: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let next = AtomicUsize::new(0);
+    let results = Mutex::new(Vec::new());
+    std::thread::scope(|scope| {
+        for _ in 0..jobs.min(count) {
+            scope.spawn(|| {
+                loop {
+                    let at = next.fetch_add(1, Ordering::Relaxed);
+                    if at >= count {
+                        break;
+                    }
+                    let result = job(at);
+                    results.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push((at, result));
+                }
+            });
+        }
+    });
+    let mut results = results.into_inner().unwrap_or_else(|poisoned| poisoned.into_inner());
+    results.sort_by_key(|(at, _)| *at);
+    results.into_iter().map(|(_, result)| result).collect()
 }
 
 /// The replays that a path stands for: itself, or those in the folder and its folders, sorted by name. What cannot be
@@ -152,6 +269,8 @@ fn print_json(results: &[Verified]) -> std::io::Result<()> {
 fn bad_tick(error: &ReplayError) -> Option<u64> {
     match error {
         ReplayError::Diverged { tick, .. }
+        | ReplayError::DivergedPart { tick, .. }
+        | ReplayError::DivergedKeyframe { tick, .. }
         | ReplayError::Refused { tick, .. }
         | ReplayError::Corrupt { tick, .. }
         | ReplayError::UnknownRecord { tick, .. }
@@ -160,10 +279,22 @@ fn bad_tick(error: &ReplayError) -> Option<u64> {
     }
 }
 
+/// The tick that this build computes otherwise than it was recorded.
+fn diverged_tick(error: &ReplayError) -> Option<u64> {
+    match error {
+        ReplayError::Diverged { tick, .. }
+        | ReplayError::DivergedPart { tick, .. }
+        | ReplayError::DivergedKeyframe { tick, .. } => Some(*tick).filter(|&tick| tick > 0),
+        _ => None,
+    }
+}
+
 /// 1 for a replay that reads but does not verify, 2 for one that is none.
 fn status(error: &ReplayError) -> u8 {
     match error {
         ReplayError::Diverged { .. }
+        | ReplayError::DivergedPart { .. }
+        | ReplayError::DivergedKeyframe { .. }
         | ReplayError::Refused { .. }
         | ReplayError::Corrupt { .. }
         | ReplayError::Decode { .. }
@@ -186,6 +317,11 @@ fn conclude(results: &[Verified]) -> Result<(), Failure> {
         say(&message);
     }
     Err(if worst == 1 { Failure::failed(last) } else { Failure::usage(last) })
+}
+
+/// Opens a file for reading here and there.
+pub(crate) fn open_file(path: &Path) -> Result<BufReader<File>, Failure> {
+    File::open(path).map(BufReader::new).map_err(|error| failure(path, &ReplayError::Io(error)))
 }
 
 /// Opens a replay for reading.

@@ -375,7 +375,7 @@ impl Touch {
         let end = |contact: Contact, events: &mut Vec<Event>| {
             if contact.touching {
                 let kind = if contact.sensor { EventKind::SensorEnd } else { EventKind::ContactEnd };
-                events.push(Event { kind, a: contact.a, b: contact.b });
+                events.push(Event { tick: 0, kind, a: contact.a, b: contact.b });
             }
         };
         for pair in &self.pairs {
@@ -393,8 +393,8 @@ impl Touch {
                 Contact { a, b, ..outcome(pair) }
             };
             match (before.touching, contact.touching) {
-                (false, true) if contact.sensor => events.push(Event { kind: EventKind::SensorBegin, a, b }),
-                (false, true) => events.push(Event { kind: EventKind::ContactBegin, a, b }),
+                (false, true) if contact.sensor => events.push(Event { tick: 0, kind: EventKind::SensorBegin, a, b }),
+                (false, true) => events.push(Event { tick: 0, kind: EventKind::ContactBegin, a, b }),
                 (true, false) => end(before, events),
                 _ => {}
             }

@@ -7,7 +7,8 @@ mod row;
 mod wake;
 mod ways;
 
-pub use event::{Collision, Event, EventKind, Pace};
+pub(crate) use event::name;
+pub use event::{Collision, Event, EventId, EventKind, Pace};
 pub(crate) use find::{Margins, NEW, Pair, Touch};
 pub(crate) use island::Resting;
 pub(crate) use row::{Contact, Contacts};

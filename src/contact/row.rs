@@ -141,6 +141,12 @@ impl Contacts {
         self.rows.iter().map(|&row| Contact::unpack(row))
     }
 
+    /// A row as memory has it, for faults.
+    #[cfg(test)]
+    pub(crate) fn raw(&mut self, at: usize) -> &mut [u64; WORDS] {
+        &mut self.rows[at]
+    }
+
     pub(crate) fn clear(&mut self) {
         self.rows.clear();
     }
@@ -154,6 +160,11 @@ impl Contacts {
     /// Hands on a table of them.
     pub(crate) fn show(&self, draft: &mut Draft, tables: &mut impl Tables, name: &'static str) {
         draft.table(tables, name, Kind::Contact, self.iter());
+    }
+
+    /// How many bytes of memory the rows use.
+    pub(crate) fn memory(&self) -> usize {
+        size_of_val(self.rows.as_slice())
     }
 
     /// XXH3-64 of the rows' little-endian bytes.

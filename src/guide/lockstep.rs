@@ -206,8 +206,18 @@
 //!
 //! ## Sounds and other things that happen once
 //!
-//! A tick that is computed again has its events again, or others. Play what cannot wait when it is first seen, and what must not be
-//! wrong (scores, deaths) from [`Lockstep::confirmed`](crate::lockstep::Lockstep::confirmed) ticks or from the game's state.
+//! A tick that is computed again has its events again, or others. An [`EventLog`](crate::EventLog) tells each once: what is new (play it),
+//! what did not happen after all (fade it out), what is confirmed (it plays already).
+//!
+//! ```text
+//! let mut log = EventLog::new(10); // the prediction window and two more
+//! lockstep.advance_telling(&mut session, |world| {
+//!     for event in log.tell(world).events.new { … }
+//! })?;
+//! ```
+//!
+//! What must not be wrong even for a moment (a score, the end of a match) waits for its tick to be
+//! [`confirmed`](crate::lockstep::Lockstep::confirmed).
 //!
 //! ## Spectators, and who comes late
 //!
@@ -226,6 +236,8 @@
 //!
 //! * The recorder's hash differs from the confirmed one: memory or a restored state on *this* machine.
 //! * Only the game's own state differs: something in `act` goes by more than its arguments, see [`determinism`](super::determinism).
-//! * The worlds differ: `lockstep.keep_evidence(64)` keeps what memory held about each of the last ticks, and
-//!   [`Evidence::first_difference`](crate::replay::Evidence::first_difference) of two peers' evidence names tick, stage, object, field and both values.
-//!   [`replays`](super::replays) has the way by recordings.
+//! * The worlds differ: `lockstep.keep_evidence(64)` keeps what memory held about each of the last ticks. A few ticks after the alarm
+//!   write `lockstep.evidence(tick)` of those around it to files on both machines; `tamias2d diff HERE THERE` of two files of one
+//!   tick, or [`Evidence::first_difference`](crate::replay::Evidence::first_difference), names stage, object, field and both values. What happened
+//!   between two ticks shows at the beginning of the second.
+//! * Without evidence there are the recordings: `tamias2d diff` finds the first tick at which they differ, and says what to do next.

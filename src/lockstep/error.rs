@@ -87,7 +87,7 @@ impl fmt::Display for Alarm {
                 if !same {
                     write!(f, ", and the game's own states, {own:016x} and {their_own:016x}")?;
                 }
-                f.write_str("; compare the recordings of both: tamias2d diff HERE THERE")
+                f.write_str("; compare the evidence or the recordings of both: tamias2d diff HERE THERE")
             }
             (true, _) => write!(
                 f,

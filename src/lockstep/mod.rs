@@ -180,6 +180,16 @@ impl<G: Game> Lockstep<G> {
     ///
     /// Call [`Lockstep::confirmed`] afterwards until it has no more; what was not taken is lost with the next call.
     pub fn advance<S: Session<G::Input>>(&mut self, session: &mut S) -> Result<bool, LockstepError> {
+        self.advance_telling(session, |_| ())
+    }
+
+    /// As [`Lockstep::advance`]; `told` sees the world after each step, of a tick computed again as well: for an
+    /// [`EventLog`](crate::EventLog), which tells of each event once.
+    pub fn advance_telling<S: Session<G::Input>>(
+        &mut self,
+        session: &mut S,
+        mut told: impl FnMut(&World),
+    ) -> Result<bool, LockstepError> {
         let window = session.window();
         if window.saturating_add(2) > self.ring.len() {
             self.keep_ticks(u32::try_from(window.saturating_add(2)).unwrap_or(u32::MAX))?;
@@ -203,6 +213,7 @@ impl<G: Game> Lockstep<G> {
                         InputStatus::Disconnected => None,
                         InputStatus::Confirmed | InputStatus::Predicted => Some(*input),
                     }));
+                    told(&self.world);
                     // A session that never goes back does not ask for saving.
                     if window == 0 {
                         self.keep()?;

@@ -112,7 +112,7 @@ fn start<R: Read + Seek>(input: &mut R, place: Option<Keyframe>) -> Result<Skimm
 fn common<R: Read + Seek>(inputs: [&mut R; 2]) -> Result<[Option<Keyframe>; 2], (usize, ReplayError)> {
     let (mut begins, mut lists) = ([0; 2], [Vec::new(), Vec::new()]);
     for (side, input) in inputs.into_iter().enumerate() {
-        let mut look = || {
+        let look = || {
             lists[side] = read_index(input)?;
             input.rewind().map_err(ReplayError::Io)?;
             begins[side] = Player::new(input)?.world().hash();

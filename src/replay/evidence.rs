@@ -93,42 +93,17 @@ impl Evidence {
 
     /// Steps the world and keeps the tick, in the memory that this has.
     pub(super) fn take(&mut self, world: &mut World, draft: &mut Draft, origin: Origin) {
-        self.take_watched(world, draft, origin, &mut |_, _| (), &mut |_, _| ());
+        self.begin(world, draft, origin);
+        world.step_through(&mut Taker { evidence: self, draft });
+        (self.tick, self.hash) = (world.tick(), world.hash());
+        world.save_into(&mut self.after);
     }
 
-    /// The same; `fault` and `inner_fault` may do anything to memory before it is looked at, after each stage and substep.
-    pub(super) fn take_watched(
-        &mut self,
-        world: &mut World,
-        draft: &mut Draft,
-        origin: Origin,
-        fault: &mut impl FnMut(Stage, &mut World),
-        inner_fault: &mut impl FnMut(u32, &mut Substep<'_>),
-    ) {
-        struct Taker<'t, F, G> {
-            evidence: &'t mut Evidence,
-            draft: &'t mut Draft,
-            fault: &'t mut F,
-            inner_fault: &'t mut G,
-        }
-        impl<F: FnMut(Stage, &mut World), G: FnMut(u32, &mut Substep<'_>)> Watch for Taker<'_, F, G> {
-            fn stage(&mut self, stage: Stage, world: &mut World) {
-                (self.fault)(stage, world);
-                self.evidence.note(stage, 0, |tables| world.show(stage, self.draft, tables));
-            }
-
-            fn substep(&mut self, at: u32, mut substep: Substep<'_>) {
-                (self.inner_fault)(at, &mut substep);
-                self.evidence.note(Stage::Solve, at, |tables| substep.show(self.draft, tables));
-            }
-        }
-        fault(Stage::Begin, world);
+    /// Keeps what memory holds before the tick.
+    pub(super) fn begin(&mut self, world: &World, draft: &mut Draft, origin: Origin) {
         self.clear(world);
         self.origin = origin;
         self.note(Stage::Begin, 0, |tables| world.show(Stage::Begin, draft, tables));
-        world.step_through(&mut Taker { evidence: self, draft, fault, inner_fault });
-        (self.tick, self.hash) = (world.tick(), world.hash());
-        world.save_into(&mut self.after);
     }
 
     fn clear(&mut self, world: &World) {
@@ -179,6 +154,24 @@ impl Evidence {
     /// The world after the tick, as a save; empty for evidence of a state alone.
     pub fn after(&self) -> &[u8] {
         &self.after
+    }
+
+    /// Whether it is of a state alone, without its tick.
+    pub fn is_of_state(&self) -> bool {
+        self.after.is_empty()
+    }
+
+    /// The end of its tick alone: what memory held after it.
+    pub fn ending(&self) -> Evidence {
+        let mut last = Evidence { moments: Vec::new(), parts: Vec::new(), after: Vec::new(), ..self.clone() };
+        if !self.is_of_state() {
+            last.before.clone_from(&self.after);
+        }
+        let start =
+            self.moments.len().checked_sub(2).and_then(|at| self.moments.get(at)).map_or(0, |moment| moment.end);
+        last.parts.extend_from_slice(&self.parts[start as usize..]);
+        last.moments.push(Moment { stage: Stage::Begin, substep: 0, end: last.parts.len() as u32 });
+        last
     }
 
     /// The tables of a moment, in order: digest and bytes.
@@ -306,6 +299,22 @@ impl Evidence {
             self.moments.push(Moment { stage, substep, end: self.parts.len() as u32 });
         }
         Ok(())
+    }
+}
+
+/// Looks at a tick from inside, and keeps it.
+pub(super) struct Taker<'t> {
+    pub(super) evidence: &'t mut Evidence,
+    pub(super) draft: &'t mut Draft,
+}
+
+impl Watch for Taker<'_> {
+    fn stage(&mut self, stage: Stage, world: &mut World) {
+        self.evidence.note(stage, 0, |tables| world.show(stage, self.draft, tables));
+    }
+
+    fn substep(&mut self, at: u32, substep: Substep<'_>) {
+        self.evidence.note(Stage::Solve, at, |tables| substep.show(self.draft, tables));
     }
 }
 

@@ -18,6 +18,8 @@ mod player;
 mod recorder;
 mod segment;
 mod skim;
+#[cfg(test)]
+mod tests;
 
 pub use compare::{Account, Comparison, compare, recompute};
 pub use error::ReplayError;

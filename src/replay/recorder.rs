@@ -49,7 +49,7 @@ impl Default for Recording {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Recorder<W> {
-    world: World,
+    pub(super) world: World,
     writer: RecordWriter<W>,
     /// The commands since the last tick, encoded after room for a hash.
     pending: Vec<u8>,

@@ -6,7 +6,7 @@ use crate::World;
 use crate::body::{Motion, Rest};
 use crate::contact::Contacts;
 use crate::motion::Push;
-use crate::store::{DecodeError, Record, hash_numbers, put, record};
+use crate::store::{DecodeError, Record, hash_bytes, hash_numbers, put, record};
 use crate::world::Status;
 use core::fmt;
 
@@ -235,6 +235,20 @@ impl Frame {
         root(&self.parts())
     }
 
+    /// How many bytes of memory it uses, without what is kept for larger ones.
+    pub fn memory(&self) -> usize {
+        let Frame { motion, quiet, contacts, resting, pushes, status, .. } = self;
+        let lists = [
+            motion.memory(),
+            size_of_val(quiet.as_slice()),
+            contacts.memory(),
+            resting.memory(),
+            size_of_val(pushes.as_slice()),
+            size_of_val(status.entries()),
+        ];
+        lists.into_iter().fold(size_of::<Frame>(), usize::saturating_add)
+    }
+
     fn parts(&self) -> [HashPart; 9] {
         let Frame { tick: _, digests, clock, motion, quiet, contacts, pushes, status, asleep, .. } = self;
         let [bodies, colliders, attractors] = digests.parts();
@@ -252,12 +266,15 @@ impl Frame {
         hashes.parts()
     }
 
-    /// The frame as bytes, the same on every machine, behind what is in `bytes`: a magic, the format version of saves, the law, the fields, and
-    /// the state's hash. 48 bytes a body and a contact, about 200 besides.
+    /// The frame as bytes, the same on every machine, behind what is in `bytes`: a magic, the format version of saves, the law, the fields,
+    /// the state's hash, and XXH3-64 of all of these bytes. 48 bytes a body and a contact, about 200 besides.
     pub fn encode_into(&self, bytes: &mut Vec<u8>) {
+        let start = bytes.len();
         header::put(bytes, header::FRAME);
         self.save(bytes);
         put(bytes, self.hash());
+        let seal = hash_bytes(&bytes[start..]);
+        put(bytes, seal);
     }
 
     /// The frame that was encoded.
@@ -269,11 +286,15 @@ impl Frame {
         let mut frame: Frame = Record::load(&mut reader, "frame")?;
         frame.asleep = frame.resting.hash();
         (frame.stirred, frame.foreign) = (true, true);
-        let saved = reader.take("hash")?;
+        let hash = reader.take("hash")?;
+        let sealed = reader.offset() as usize;
+        let seal = reader.take("seal")?;
         reader.finish()?;
-        let computed = frame.hash();
-        if saved != computed {
-            return Err(DecodeError::Hash { saved, computed });
+        // The state's hash says nothing of the tick and the configuration apart.
+        for (saved, computed) in [(hash, frame.hash()), (seal, hash_bytes(&bytes[..sealed]))] {
+            if saved != computed {
+                return Err(DecodeError::Hash { saved, computed });
+            }
         }
         Ok(frame)
     }

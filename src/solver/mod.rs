@@ -308,6 +308,11 @@ impl Solver {
         self.movers.shifted(mul(speed, self.scales.margins.tick, 79), &self.scales)
     }
 
+    /// The collisions of the tick, to be named.
+    pub(crate) fn collisions_mut(&mut self) -> &mut [Collision] {
+        &mut self.timeline.collisions
+    }
+
     /// Forgets the collisions of the tick.
     pub(crate) fn forget_collisions(&mut self) {
         self.timeline.collisions.clear();

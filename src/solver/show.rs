@@ -49,7 +49,8 @@ impl Show for Aabb {
 
 impl Show for Collision {
     fn show(&self, cells: &mut Cells<'_>) {
-        let Collision { a, b, order, time, point, normal, impulse, before, after } = self;
+        // Tick and ordinal are given when the tick ends.
+        let Collision { tick: _, ordinal: _, a, b, order, time, point, normal, impulse, before, after } = self;
         cells.field("a", |c| a.show(c));
         cells.field("b", |c| b.show(c));
         cells.field("order", |c| order.show(c));
@@ -121,6 +122,20 @@ fn show_rows(draft: &mut Draft, tables: &mut impl Tables, pairs: &[Pair], blocks
         Some(Lane(pair, blocks.get(seat / LANES)?, seat % LANES))
     });
     draft.table(tables, "rows", Kind::Pair, rows);
+}
+
+/// What of the solver a fault may hit, in tests.
+#[cfg(test)]
+impl Solver {
+    pub(crate) fn memory(&mut self) -> (&mut [Block], &mut Movers, &mut [Collision]) {
+        (&mut self.blocks, &mut self.movers, &mut self.timeline.collisions)
+    }
+
+    /// Where the row of a pair sits: block and lane.
+    pub(crate) fn seat(&self, row: u32) -> (usize, usize) {
+        let seat = self.colors.seats[row as usize] as usize;
+        (seat / LANES, seat % LANES)
+    }
 }
 
 impl Solver {

@@ -314,6 +314,19 @@ impl<T: Row> Arena<T> {
         Ok(())
     }
 
+    /// A slot as memory has it, for faults: generation, link, value. No digest is renewed.
+    #[cfg(test)]
+    pub(crate) fn memory(&mut self, slot: usize) -> (&mut u32, &mut u32, &mut T) {
+        let Slot { generation, link, value } = &mut self.slots[slot];
+        (generation, link, value)
+    }
+
+    /// The first free slot and the slots in use, likewise.
+    #[cfg(test)]
+    pub(crate) fn chain_memory(&mut self) -> [&mut u32; 2] {
+        [&mut self.chain.free, &mut self.chain.live]
+    }
+
     /// Hands on tables of the slots and of the chain of free ones.
     pub(crate) fn show(&self, draft: &mut Draft, tables: &mut impl Tables, names: [&'static str; 2], kind: Kind)
     where

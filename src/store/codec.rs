@@ -170,15 +170,20 @@ impl fmt::Display for DecodeError {
             DecodeError::Trailing { offset } => write!(f, "unexpected bytes after the end at byte {offset}"),
             DecodeError::NotASave => f.write_str("not a saved tamias2d world"),
             DecodeError::NotAFrame => f.write_str("not a frame of a tamias2d world"),
-            DecodeError::Version { found, known } => {
-                write!(f, "saved in format version {found}, this build reads version {known}")
-            }
-            DecodeError::Law { found, known } => {
-                write!(f, "saved under arithmetic law {found}, this build computes by law {known}")
-            }
-            DecodeError::Hash { saved, computed } => {
-                write!(f, "the state read has hash {computed:016x}, saved was {saved:016x}")
-            }
+            DecodeError::Version { found, known } => write!(
+                f,
+                "saved in format version {found}, this build reads version {known}: load it with a build of version {found}"
+            ),
+            DecodeError::Law { found, known } => write!(
+                f,
+                "saved under arithmetic law {found}, this build computes by law {known}: continue it with a build of law \
+                 {found}"
+            ),
+            DecodeError::Hash { saved, computed } => write!(
+                f,
+                "the state read has hash {computed:016x}, saved was {saved:016x}: the bytes were changed on their way, fetch \
+                 them again"
+            ),
         }
     }
 }

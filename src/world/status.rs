@@ -48,6 +48,12 @@ impl Status {
         }
     }
 
+    /// The entries as memory has them, for faults.
+    #[cfg(test)]
+    pub(crate) fn memory(&mut self) -> &mut [StatusEntry] {
+        &mut self.entries
+    }
+
     pub(crate) fn clear(&mut self) {
         self.entries.clear();
     }

@@ -3,6 +3,7 @@
 use super::sleep::Sleepers;
 use super::stage::Stage;
 use crate::World;
+use crate::contact::name;
 use crate::motion::{Fault, integrate};
 use crate::solver::Substep;
 
@@ -161,14 +162,15 @@ impl World {
         Sleepers { bodies, colliders, contacts, resting, touch, drive, gravity: config.gravity }.lull_quiet(limits);
     }
 
-    /// What went out of range, into the status; and the tick is over.
+    /// What went out of range, into the status; events and collisions get their ids, and the tick is over.
     fn close_tick(&mut self) {
-        let World { tick, bodies, status, faults, .. } = self;
+        let World { tick, bodies, resting, status, solver, events, faults, .. } = self;
         for Fault { slot, bound } in faults.drain(..) {
             if let Some(body) = bodies.id(slot) {
                 status.note(*tick, body, bound);
             }
         }
+        name(*tick, events, solver.collisions_mut(), &mut resting.found);
         *tick = tick.saturating_add(1);
     }
 }

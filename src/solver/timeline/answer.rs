@@ -253,6 +253,8 @@ impl Timeline {
             let prior = |at: usize| pace(&priors[strike.bodies[at]]);
             let latter = |at: usize| pace(&flights.list[locals[strike.bodies[at]] as usize].state);
             collisions.push(Collision {
+                tick: 0,
+                ordinal: 0,
                 a: id(0),
                 b: id(1),
                 order: *order,
