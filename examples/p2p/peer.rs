@@ -3,7 +3,7 @@
 use crate::Options;
 use crate::game::{Arena, JUMP, LEFT, RIGHT, THROW, VERSION};
 use crate::net::{Dice, Rough, Tally};
-use ggrs::{DesyncDetection, GgrsEvent, P2PSession, PlayerType, SessionBuilder};
+use ggrs::{DesyncDetection, GgrsError, GgrsEvent, P2PSession, PlayerType, SessionBuilder};
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
@@ -195,12 +195,14 @@ fn play(options: &Options, number: usize) -> Result<(), Failure> {
         }
         fault.strike(&mut lockstep);
         for event in session.events() {
-            if let GgrsEvent::DesyncDetected { frame, local_checksum, remote_checksum, addr } = event {
-                let told = lockstep.alarm(frame, local_checksum, remote_checksum);
-                if alarm.is_none() {
+            match event {
+                GgrsEvent::DesyncDetected { frame, local_checksum, remote_checksum, addr } if alarm.is_none() => {
+                    let told = lockstep.alarm(frame, local_checksum, remote_checksum);
                     println!("alarm, by {addr}: {told}");
                     alarm = Some(told.tick);
                 }
+                GgrsEvent::Disconnected { addr } => return Err(format!("{addr} was cut off").into()),
+                _ => {}
             }
         }
         // A few ticks later, so that the ticks about the alarm are not predictions any more.
@@ -208,7 +210,7 @@ fn play(options: &Options, number: usize) -> Result<(), Failure> {
             alarm = Some(u64::MAX);
             keep_evidence(options, role, &lockstep)?;
         }
-        pace(&session, ports.spectator.filter(|_| number == 0).map(|_| ports.players.len()));
+        pace(&mut session, ports.spectator.filter(|_| number == 0).map(|_| ports.players.len()), &over);
     }
     stream.file.flush()?;
     recorder.finish()?.flush()?;
@@ -281,13 +283,21 @@ fn keep_evidence(options: &Options, role: Role, lockstep: &Lockstep<Arena>) -> R
     Ok(())
 }
 
-/// A spectator has room for the inputs of 60 frames: the match must not run away from him.
-fn pace(session: &P2PSession<Net<Arena>>, spectator: Option<usize>) {
+/// A spectator has room for the inputs of 60 frames, and ggrs cuts off who leaves 128 unanswered: the match must not run away
+/// from him.
+fn pace(session: &mut P2PSession<Net<Arena>>, spectator: Option<usize>, over: &AtomicBool) {
     let Some(handle) = spectator else { return };
-    match session.network_stats(handle) {
-        Ok(stats) if stats.send_queue_len < 30 => {}
-        // Not known in the first second.
-        _ => std::thread::sleep(Duration::from_millis(2)),
+    loop {
+        match session.network_stats(handle) {
+            Ok(stats) if stats.send_queue_len < 30 => return,
+            Ok(_) if !over.load(Ordering::Relaxed) => {
+                std::thread::sleep(Duration::from_micros(200));
+                session.poll_remote_clients();
+            }
+            // Not known in the first second.
+            Err(GgrsError::NotEnoughData) => return std::thread::sleep(Duration::from_millis(10)),
+            _ => return,
+        }
     }
 }
 
@@ -325,6 +335,9 @@ fn watch(options: &Options) -> Result<(), Failure> {
         if !lockstep.advance(&mut session)? {
             waits += 1;
             std::thread::sleep(Duration::from_micros(200));
+        }
+        if session.events().any(|event| matches!(event, GgrsEvent::Disconnected { .. })) {
+            return Err("the host is gone".into());
         }
         while let Some(confirmed) = lockstep.confirmed() {
             stream.write(options, confirmed.tick, [confirmed.world, confirmed.own])?;

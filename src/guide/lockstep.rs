@@ -222,7 +222,8 @@
 //! ## Spectators, and who comes late
 //!
 //! A spectator has a `SpectatorSession` and the same `Lockstep`: `lockstep.advance(&mut spectator)`. ggrs knows spectators from
-//! the beginning on only, and has room for 60 ticks: the host waits for one who is slower.
+//! the beginning on only, has room for 60 ticks on their side, and cuts off who leaves 128 unanswered: a host that does not run by the
+//! clock looks at `network_stats` and waits for them.
 //!
 //! Who comes later gets the match itself. The host sends `lockstep.snapshot(&hello)` and, from then on, `confirmed.inputs` of each
 //! tick, by a connection that loses nothing; the other one calls [`Lockstep::join`](crate::lockstep::Lockstep::join), which refuses
