@@ -6,9 +6,7 @@
 
 use std::hint::black_box;
 use std::time::Instant;
-use tamias2d::{
-    BodyDef, BodyId, BodyKind, ColliderDef, Commands, Frame, Rollback, Shape, Sleeping, Vec2, World, WorldDef,
-};
+use tamias2d::{BodyDef, BodyKind, ColliderDef, Commands, Frame, Rollback, Shape, Sleeping, Vec2, World, WorldDef};
 
 const ROUNDS: usize = 200;
 /// As many ticks as a rollback of eight.
@@ -61,13 +59,15 @@ impl Column {
     }
 }
 
-/// Shoots a box into the world and takes the one away that was shot 30 ticks ago, which begins a new version of the tables.
-fn shoot(world: &mut World, shots: &mut Vec<BodyId>) {
+/// Shoots a box into the world and takes the one away that was shot 8 ticks ago, which begins a version of the tables that
+/// there was not yet.
+fn shoot(world: &mut World, shot: u64) {
     let mut def = unit_box(BodyKind::Dynamic, -60.0, 30.0, 1.0);
-    def.velocity = Vec2::from_f64(5.0, 10.0).expect("in range");
-    shots.push(world.create_body(&def).expect("accepted"));
-    if shots.len() > 30 {
-        world.destroy_body(shots.remove(0)).expect("accepted");
+    (def.velocity, def.user_data) = (Vec2::from_f64(5.0, 10.0).expect("in range"), shot);
+    world.create_body(&def).expect("accepted");
+    let old = world.bodies().find(|body| body.user_data() > 0 && body.user_data() + 8 <= shot).map(|body| body.id());
+    if let Some(old) = old {
+        world.destroy_body(old).expect("it is there");
     }
 }
 
@@ -75,7 +75,7 @@ fn measure(name: &str, mut world: World) {
     let mut columns: [Column; 12] = Default::default();
     let [tick, save, restore, both, after, ring_save, ring_restore, versions, other, hash, clone, load] = &mut columns;
     let (mut frame, mut ring) = (Frame::default(), Rollback::new(DEPTH + 1));
-    let (mut bytes, mut copy, mut shots) = (Vec::new(), world.clone(), Vec::new());
+    let (mut bytes, mut copy, mut shots) = (Vec::new(), world.clone(), 0);
     let mut shooter = world.clone();
     let mut second = Rollback::new(DEPTH + 1);
     for _ in 0..ROUNDS {
@@ -101,15 +101,12 @@ fn measure(name: &str, mut world: World) {
         let now = shooter.tick();
         for _ in 0..DEPTH {
             second.save(&shooter);
-            shoot(&mut shooter, &mut shots);
+            shots += 1;
+            shoot(&mut shooter, shots);
             shooter.step();
         }
         versions.time(|| second.save(&shooter));
-        let kept = shots.clone();
         other.time(|| second.restore(&mut shooter, now).expect("held"));
-        shots = kept;
-        shots.truncate(shots.len().saturating_sub(DEPTH as usize));
-        shots.retain(|&id| shooter.body(id).is_some());
         hash.time(|| black_box(frame.hash()));
         clone.time(|| copy.clone_from(black_box(&world)));
         world.save_into(&mut bytes);

@@ -602,10 +602,10 @@ fn recorded_runs_verify_and_bad_files_are_named() {
         std::fs::write(&path, bytes).expect("the test's folder");
         path
     };
-    // An idle tick has 13 bytes, the end 25: cut inside tick 98, and change the hash of tick 50.
-    let cut = write("cut.replay", &bytes[..bytes.len() - 25 - 13 * 2 - 3]);
+    // An idle tick has 9 bytes, the parts after tick 60 have 81, the end 25: cut inside tick 98, and change the hash of tick 50.
+    let cut = write("cut.replay", &bytes[..bytes.len() - 25 - 9 * 2 - 3]);
     let mut changed = bytes.clone();
-    let at = bytes.len() - 25 - 13 * 51 + 1;
+    let at = bytes.len() - 25 - 9 * 51 - 81 + 1;
     changed[at] ^= 1;
     let changed = write("changed.replay", &changed);
     let mut longer = bytes.clone();
@@ -720,4 +720,125 @@ fn scenes_are_listed_and_shown() {
         let show = tamias(&["scenes", "--show", name]);
         assert_eq!(run(&show.out, &["--ticks", "1"]).status, 0, "{name}");
     }
+}
+
+/// A box that falls on a floor, beside a ball: recorded for as many ticks, with this velocity.
+fn falling(folder: &Path, name: &str, velocity: &str, ticks: &str, commands: &str) -> PathBuf {
+    let scene = format!(
+        r#"{{"name":"n","tick_rate":60,"gravity":[0,-9.8],"bodies":[
+            {{"name":"floor","kind":"static","position":[0,-1],"colliders":[{{"box":[50,2]}}]}},
+            {{"name":"box","position":[0,2],"velocity":[{velocity},0],"user_data":7,"colliders":[{{"box":[1,1]}}]}},
+            {{"name":"ball","position":[3,4],"colliders":[{{"circle":0.5,"restitution":0.5}}]}}],
+            "commands":[{commands}]}}"#
+    );
+    let path = folder.join(name);
+    let output = run(&scene, &["--ticks", ticks, "--every", "100000", "--record", shown(&path)]);
+    assert_eq!((output.status, output.err.as_str()), (0, ""));
+    path
+}
+
+#[test]
+fn diff_names_what_differs_and_what_to_do() {
+    let folder = folder("diff");
+    let (a, same) = (falling(&folder, "a.replay", "1", "100", ""), falling(&folder, "same.replay", "1", "90", ""));
+    let output = tamias(&["diff", shown(&a), shown(&same)]);
+    assert_eq!((output.status, output.err.as_str()), (0, ""));
+    assert_eq!(output.out, "same\n  both record the same from tick 0 to tick 90\n");
+
+    // Another world from the beginning on.
+    let other = falling(&folder, "b.replay", "1.5", "100", "");
+    let output = tamias(&["diff", shown(&a), shown(&other)]);
+    assert_eq!(output.status, 1);
+    assert_eq!(output.err, format!("tamias2d: {} and {} differ at tick 0\n", shown(&a), shown(&other)));
+    let field = "motion: body 1v0 (user data 7): velocity.x\n      A  1 m/s (bits 0x0001000000000000)\n      \
+                 B  1.5 m/s (bits 0x0001800000000000)\n";
+    assert!(output.out.contains("they begin with different worlds"), "{}", output.out);
+    assert!(output.out.contains(field), "{}", output.out);
+
+    // Other commands.
+    let command = r#"{"tick":40,"do":{"apply_impulse":{"body":"ball","impulse":[1,0]}}}"#;
+    let ordered = falling(&folder, "c.replay", "1", "100", command);
+    let output = tamias(&["diff", shown(&a), shown(&ordered)]);
+    assert_eq!(output.status, 1);
+    assert!(output.out.starts_with("differ at tick 41\n"), "{}", output.out);
+    assert!(output.out.contains("different commands"), "{}", output.out);
+    assert!(
+        output.out.contains("A has no command") && output.out.contains("B has 1 command: ApplyImpulse"),
+        "{}",
+        output.out
+    );
+    let json = tamias(&["diff", shown(&a), shown(&ordered), "--json"]);
+    let report: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
+    assert_eq!((json.status, &report["same"], &report["tick"]), (1, &false.into(), &41.into()));
+
+    // Evidence of one tick, from either recording.
+    let evidence = |replay: &Path, name: &str| {
+        let out = folder.join(name);
+        let output = tamias(&["verify", shown(replay), "--evidence", shown(&out), "--tick", "30"]);
+        assert_eq!((output.status, output.err.as_str()), (0, ""));
+        assert!(output.out.starts_with("evidence of tick 30, hash "), "{}", output.out);
+        out
+    };
+    let (of_a, of_b) = (evidence(&a, "a.evidence"), evidence(&other, "b.evidence"));
+    assert_eq!(tamias(&["diff", shown(&of_a), shown(&of_a)]).status, 0);
+    for pair in [[&of_a, &of_b], [&a, &of_b], [&of_a, &other]] {
+        let json = tamias(&["diff", shown(pair[0]), shown(pair[1]), "--json", "--fields", "3"]);
+        let report: serde_json::Value = serde_json::from_str(&json.out).expect("JSON");
+        if pair[1] == &other {
+            // The recording is played for its side.
+            assert_eq!(report["same"], false);
+        }
+        assert_eq!((json.status, &report["tick"], &report["stage"]), (1, &30.into(), &"begin".into()), "{}", json.out);
+        assert_eq!(report["fields"].as_array().expect("a list").len(), 3);
+        let text = json.out;
+        assert!(text.contains("body 1v0 (user data 7)") && text.contains("velocity.x"), "{text}");
+    }
+
+    // What cannot be compared, or read.
+    let text = folder.join("text");
+    std::fs::write(&text, "no recording at all").expect("written");
+    for (args, words) in
+        [([shown(&a), shown(&text)], "not a replay, a save or evidence"), ([shown(&a), "missing"], "missing")]
+    {
+        let output = tamias(&["diff", args[0], args[1]]);
+        assert_eq!((output.status, output.out.as_str()), (2, ""));
+        assert!(output.err.contains(words) && output.err.lines().count() == 1, "{}", output.err);
+    }
+    let other_tick = folder.join("c.evidence");
+    tamias(&["verify", shown(&a), "--evidence", shown(&other_tick), "--tick", "31"]);
+    let output = tamias(&["diff", shown(&of_a), shown(&other_tick)]);
+    assert_eq!(output.status, 2);
+    assert!(output.err.contains("write both with the same --tick"), "{}", output.err);
+    let output = tamias(&["verify", shown(&a), "--evidence", shown(&other_tick), "--tick", "101"]);
+    assert_eq!(output.status, 2);
+    assert!(output.err.contains("there is no tick 101 in the replay, which has ticks 1 to 100"), "{}", output.err);
+    let output = tamias(&["verify", shown(&a), "--evidence", shown(&a), "--tick", "5"]);
+    assert_eq!((output.status, output.err.contains("is the replay itself")), (2, true), "{}", output.err);
+}
+
+#[test]
+fn a_long_recording_is_verified_in_segments() {
+    let folder = folder("segments");
+    let long = falling(&folder, "long.replay", "1", "8000", "");
+    let whole = tamias(&["verify", shown(&long), "--hashes", "--jobs", "1"]);
+    let split = tamias(&["verify", shown(&long), "--hashes", "--jobs", "3"]);
+    assert_eq!((whole.status, split.status), (0, 0));
+    assert_eq!(whole.out.lines().count(), 8001);
+    assert!(whole.out == split.out, "however many at a time, the hashes are the same, and in order");
+    let info = tamias(&["info", shown(&long)]);
+    assert!(info.out.contains("keyframes   2, and 0 ticks with evidence"), "{}", info.out);
+    let output = tamias(&["verify", shown(&long), "--jobs", "3"]);
+    assert!(output.out.contains(": 8000 ticks, 0 commands, hash "), "{}", output.out);
+    // A tick in the second segment that no build computes, in a file that is whole in itself, cannot be made without the format;
+    // a damaged one is named.
+    let mut bytes = std::fs::read(&long).expect("there");
+    let middle = bytes.len() * 5 / 8;
+    bytes[middle] ^= 1;
+    std::fs::write(&long, &bytes).expect("written");
+    let output = tamias(&["verify", shown(&long), "--jobs", "3"]);
+    assert_eq!(output.status, 1);
+    assert!(output.err.contains("replay corrupt at tick "), "{}", output.err);
+    let out = folder.join("none.evidence");
+    let output = tamias(&["verify", shown(&folder.join("long.replay")), "--evidence", shown(&out)]);
+    assert_eq!((output.status, out.exists()), (1, false));
 }

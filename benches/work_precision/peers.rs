@@ -282,8 +282,8 @@ pub fn tables(folder: &Path) -> String {
     if let Some(table) = file("peers_rollback.csv") {
         page += "\n### Rollback\n\nHow many ticks can be computed again in a frame of 16.7 ms: going back by 8 ticks once, then each \
                  tick with its state kept as the first time. In brackets going back, and a tick with keeping it, in µs, medians of the \
-                 best round. Here a ring of `Rollback` does it, in Box2D its world's image, in Rapier a clone of its sets. Nobody \
-                 checks a hash; a lockstep game does (a pass over the bodies, here already in the price of keeping).\n\n";
+                 best round. Here a ring of `Rollback` does it, in Box2D its world's image, in Rapier a clone of its sets. No \
+                 hash is computed.\n\n";
         page += &rollbacks(&table);
     }
     page

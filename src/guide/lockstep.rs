@@ -227,8 +227,8 @@
 //!
 //! Who comes later gets the match itself. The host sends `lockstep.snapshot(&hello)` and, from then on, `confirmed.inputs` of each
 //! tick, by a connection that loses nothing; the other one calls [`Lockstep::join`](crate::lockstep::Lockstep::join), which refuses
-//! what is damaged or of another game, and then `lockstep.follow(&inputs)` for each tick. To let him play, end the session at a tick that all
-//! have confirmed, and begin a new one with one more player from there.
+//! what is damaged or of another game, and then `lockstep.follow(&inputs)` for each tick. To let him play, end the session, let all
+//! peers [`restart`](crate::lockstep::Lockstep::restart) at a tick that each has settled, and begin a session with one more player there.
 //!
 //! ## When the alarm rings
 //!

@@ -247,6 +247,18 @@ impl<G: Game> Lockstep<G> {
         Some(Confirmed { tick: *tick, world, own, inputs, commands })
     }
 
+    /// Goes back to a settled tick, for a session that begins there: after a pause, or with another player. All peers go to the same
+    /// one. Errors: a tick that is not settled or not kept any more.
+    pub fn restart(&mut self, tick: u64) -> Result<(), LockstepError> {
+        if tick > self.settled() {
+            return Err(LockstepError::Gone { tick });
+        }
+        self.go_back(tick)?;
+        while self.confirmed().is_some() {}
+        (self.begin, self.settled, self.saved) = (tick, tick, tick);
+        Ok(())
+    }
+
     /// The world at an earlier tick, if it is kept.
     pub fn world_at(&self, tick: u64) -> Option<World> {
         let mut world = self.world.clone();

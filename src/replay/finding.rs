@@ -104,10 +104,11 @@ impl Evidence {
             let mut findings = Vec::new();
             let (a, b) = (self.sheets(at)?, other.sheets(at)?);
             let (ours, theirs) = (self.changed(at)?, other.changed(at)?);
+            let names = (self.names(at)?, other.names(at)?);
             for (digest, sheet) in &a {
                 let theirs = b.iter().find(|(_, theirs)| theirs.name == sheet.name);
                 if theirs.is_none_or(|(theirs, _)| theirs != digest) {
-                    compare(sheet, theirs.map(|(_, sheet)| sheet), [&a, &b], &mut findings);
+                    compare(sheet, theirs.map(|(_, sheet)| sheet), [&names.0, &names.1], &mut findings);
                 }
             }
             // What the stage changes, it changes on both sides.
@@ -119,16 +120,39 @@ impl Evidence {
         Ok(None)
     }
 
-    /// The names of tables that a moment has changed since the one before, or that are new.
+    /// The names of tables that a moment has changed since they were last looked at, or that are new.
     fn changed(&self, at: usize) -> Result<Vec<String>, DecodeError> {
-        let Some(before) = at.checked_sub(1) else { return Ok(Vec::new()) };
-        let (before, now) = (self.sheets(before)?, self.sheets(at)?);
-        let same = |digest: u64, name: &str| before.iter().any(|(was, sheet)| *was == digest && sheet.name == name);
-        Ok(now.into_iter().filter(|(digest, sheet)| !same(*digest, &sheet.name)).map(|(_, sheet)| sheet.name).collect())
+        let mut changed = Vec::new();
+        let mut earlier = Vec::new();
+        for before in (0..at).rev() {
+            // Further back than the last whole moment nothing was looked at last.
+            earlier.extend(self.sheets(before)?);
+            if self.is_whole(before) {
+                break;
+            }
+        }
+        for (digest, sheet) in self.sheets(at)? {
+            let last = earlier.iter().find(|(_, was)| was.name == sheet.name);
+            if at > 0 && last.is_none_or(|(was, _)| *was != digest) {
+                changed.push(sheet.name);
+            }
+        }
+        Ok(changed)
+    }
+
+    /// Whether all tables belong to a moment, not only those of a substep.
+    fn is_whole(&self, at: usize) -> bool {
+        self.moment(at).is_none_or(|(_, substep)| substep == 0)
+    }
+
+    /// The tables by which objects are named at a moment: those of the last whole one.
+    fn names(&self, at: usize) -> Result<Vec<(u64, Sheet<'_>)>, DecodeError> {
+        let whole = (0..=at).rev().find(|&at| self.is_whole(at)).unwrap_or(0);
+        self.sheets(whole)
     }
 }
 
-/// All tables of a moment, of either side.
+/// The tables by which objects are named, of either side.
 type Sides<'s> = [&'s [(u64, Sheet<'s>)]; 2];
 
 fn compare(a: &Sheet<'_>, b: Option<&Sheet<'_>>, sides: Sides<'_>, findings: &mut Vec<Finding>) {

@@ -1,11 +1,15 @@
-//! Replays: a world, the commands of every tick and the hash after it; recorded, played, verified.
+//! Replays: a world, the commands of every tick and the hash after it; recorded, played, verified, compared.
 //!
 //! A file is a header and a chain of records: the initial world, then each tick's commands and the hash of the complete
-//! state after it, then an end with a digest of every byte. `replays/FORMAT.md` has all of it byte by byte. A record that
-//! was changed, moved, doubled or left out breaks the chain there. An idle tick costs 13 bytes.
+//! state after it, then an end. `replays/FORMAT.md` has all of it byte by byte. A record that was changed, moved, doubled or
+//! left out breaks the chain. An idle tick costs 9 bytes. Between ticks are hashes of the state's parts, and keyframes, from
+//! which a recording is played without what comes before ([`Player::at`]), and verified in segments ([`Segment`]).
 //!
 //! A file without its end was cut off, by a crash or a full disk: it is played to its last whole tick and reported as
 //! truncated.
+//!
+//! When two machines disagree: [`compare`] says from which tick on, [`Flight`] holds what memory held in the last ticks,
+//! [`recompute`] what this build makes of a tick, and [`Evidence::first_difference`] names stage, object, field and both values.
 
 mod compare;
 mod error;

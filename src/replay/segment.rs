@@ -48,10 +48,13 @@ impl Segment {
     /// tick. Of the summary only the last segment's is that of the recording.
     ///
     /// Errors: as [`Player::step`]'s; ticks are counted from the start of the recording.
-    pub fn verify(&self, input: impl Read + Seek, mut each: impl FnMut(u64)) -> Result<Summary, ReplayError> {
+    pub fn verify(&self, mut input: impl Read + Seek, mut each: impl FnMut(u64)) -> Result<Summary, ReplayError> {
         let mut player = match &self.from {
             Some(keyframe) => Player::at(input, keyframe)?,
-            None => Player::new(input)?,
+            None => {
+                input.rewind().map_err(ReplayError::Io)?;
+                Player::new(input)?
+            }
         };
         match &self.to {
             Some(keyframe) => player.verify_to(keyframe, each)?,
