@@ -38,7 +38,10 @@ impl fmt::Display for LockstepError {
                 f.write_str("the game's own state cannot be written: it has more than 1 MiB, or a type that refuses")
             }
             LockstepError::Gone { tick } => {
-                write!(f, "the state of tick {tick} is not there: it is not kept any more, or not settled yet; keep more ticks, and save every frame")
+                write!(
+                    f,
+                    "the state of tick {tick} is not there: it is not kept any more, or not settled yet; keep more ticks, and save every frame"
+                )
             }
             LockstepError::NotASnapshot => f.write_str("not a snapshot of a match: ask the host for one"),
             LockstepError::Damaged => {
