@@ -35,8 +35,10 @@ impl Game for Jumpers {
         }
         for (disc, input) in self.discs.iter().zip(inputs) {
             let Some(push @ (-1 | 1)) = input else { continue };
-            self.jumps += 1;
-            turn.apply_impulse(*disc, newton_seconds(f64::from(*push) * 0.3, 0.4), None).expect("it is there");
+            let low = turn.world().body(*disc).is_some_and(|disc| disc.position().y < at(0.0, 1.05).y);
+            self.jumps += u32::from(low);
+            let up = if low { 1.0 } else { 0.0 };
+            turn.apply_impulse(*disc, newton_seconds(f64::from(*push) * 0.3, up), None).expect("it is there");
         }
     }
 
@@ -47,7 +49,7 @@ impl Game for Jumpers {
 
 fn begin() -> (Jumpers, World) {
     let mut world = world(0.0, -9.8);
-    let floor = vec![rectangle(40.0, 1.0)];
+    let floor = vec![rectangle(1000.0, 1.0)];
     world.create_body(&BodyDef { kind: BodyKind::Static, colliders: floor, ..BodyDef::default() }).expect("in range");
     (Jumpers { discs: Vec::new(), jumps: 0, landings: 0 }, world)
 }
@@ -244,7 +246,7 @@ fn one_more_player_comes_in_the_middle() {
 fn events_are_told_once() {
     let (mut peers, mut sessions) = (vec![Peer::new(), Peer::new()], sessions(2, ROLLBACK));
     let (mut log, mut heard, mut cancelled) = (EventLog::new(10), BTreeSet::<EventId>::new(), 0);
-    while peers[0].lockstep.settled() < 400 {
+    while peers[0].lockstep.settled() < 800 {
         let listen = |world: &World| {
             let told = log.tell(world);
             for event in told.events.new {
