@@ -235,10 +235,12 @@
 //! [`Alarm`](crate::lockstep::Alarm) says at which tick, and whether the worlds differ or the game's own states. Its tick is the first
 //! that was compared, and reports of checksums are lost as other packets are: the recordings say exactly which tick was the first.
 //!
-//! * The recorder's hash differs from the confirmed one: memory or a restored state on *this* machine.
+//! * The recorder's hash differs from the confirmed one: memory or a restored state on *this* machine, since that tick.
 //! * Only the game's own state differs: something in `act` goes by more than its arguments, see [`determinism`](super::determinism).
 //! * The worlds differ: `lockstep.keep_evidence(64)` keeps what memory held about each of the last ticks. A few ticks after the alarm
-//!   write `lockstep.evidence(tick)` of those around it to files on both machines; `tamias2d diff HERE THERE` of two files of one
-//!   tick, or [`Evidence::first_difference`](crate::replay::Evidence::first_difference), names stage, object, field and both values. What happened
+//!   write `lockstep.evidence(tick)` of those around it to files on both machines. `tamias2d diff HERE THERE` of two files of one
+//!   tick, or [`Evidence::first_difference`](crate::replay::Evidence::first_difference), names stage, object, field and both values; and
+//!   `tamias2d diff RECORDING EVIDENCE` of one machine does so without the other, for the recording is computed again. What happened
 //!   between two ticks shows at the beginning of the second.
-//! * Without evidence there are the recordings: `tamias2d diff` finds the first tick at which they differ, and says what to do next.
+//! * Recordings made as above hold commands, computed a second time beside the match: a fault of memory is not in them, but what
+//!   the game commanded because of it is. `tamias2d diff` of two of them names the first tick at which commands differ.

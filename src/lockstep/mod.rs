@@ -144,7 +144,7 @@ impl<G: Game> Lockstep<G> {
     }
 
     /// From now on keeps evidence of the last `ticks` ticks: what memory held before each, after each stage of it, and after it.
-    /// It costs about as much as the steps themselves, so it is for games that are being tested, or that suspect a desync.
+    /// It makes a tick cost several times as much, so it is for games that are being tested, or that suspect a desync.
     pub fn keep_evidence(&mut self, ticks: u32) {
         self.flight = Flight::new(ticks);
     }
