@@ -182,6 +182,11 @@ impl Evidence {
         parts.iter().map(|part| (part.digest, &self.bytes[self.blobs[part.blob as usize].clone()]))
     }
 
+    /// How many moments there are.
+    pub(super) fn count(&self) -> usize {
+        self.moments.len()
+    }
+
     pub(super) fn moment(&self, at: usize) -> Option<(Stage, u32)> {
         self.moments.get(at).map(|moment| (moment.stage, moment.substep))
     }

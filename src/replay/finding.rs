@@ -111,6 +111,9 @@ impl Evidence {
                     compare(sheet, theirs.map(|(_, sheet)| sheet), [&names.0, &names.1], &mut findings);
                 }
             }
+            if substep > 0 {
+                self.behind(other, at, &mut findings)?;
+            }
             // What the stage changes, it changes on both sides.
             let made = |finding: &Finding| ours.contains(&finding.table) && theirs.contains(&finding.table);
             findings.sort_by_key(|finding| (made(finding), !finding.is_one_bit()));
@@ -118,6 +121,21 @@ impl Evidence {
             return Ok(Some(Divergence { tick: self.tick(), stage, substep, findings, causes }));
         }
         Ok(None)
+    }
+
+    /// A substep shows what substeps change. What lies behind it, and the stage does not change, is looked at when it has ended.
+    fn behind(&self, other: &Evidence, substep: usize, findings: &mut Vec<Finding>) -> Result<(), DecodeError> {
+        let Some(end) = (substep..self.count().min(other.count())).find(|&at| self.is_whole(at)) else { return Ok(()) };
+        let (a, b, seen) = (self.sheets(end)?, other.sheets(end)?, self.sheets(substep)?);
+        let (ours, theirs) = (self.changed(end)?, other.changed(end)?);
+        for (_, sheet) in &a {
+            let made = ours.contains(&sheet.name) && theirs.contains(&sheet.name);
+            if !made && !seen.iter().any(|(_, seen)| seen.name == sheet.name) {
+                let theirs = b.iter().find(|(_, theirs)| theirs.name == sheet.name);
+                compare(sheet, theirs.map(|(_, sheet)| sheet), [&a, &b], findings);
+            }
+        }
+        Ok(())
     }
 
     /// The names of tables that a moment has changed since they were last looked at, or that are new.

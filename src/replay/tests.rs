@@ -59,6 +59,9 @@ fn world_of_everything() -> World {
     let paddle = add(BodyKind::Kinematic, at(-6.0, 1.2), (0.0, 0.0), vec![rectangle(4.0, 0.2)], 0);
     let corners = [(-0.6, -0.4), (0.6, -0.4), (0.0, 0.7)].map(|(x, y)| at(x, y)).to_vec();
     add(BodyKind::Dynamic, at(-6.0, 3.0), (0.0, 0.0), vec![ColliderDef::new(Shape::Polygon { vertices: corners })], 0);
+    let offset = at(0.0, 1.1);
+    let pair = vec![rectangle(1.0, 1.0), ColliderDef { offset, ..rectangle(1.0, 1.0) }, rectangle(0.5, 0.5)];
+    add(BodyKind::Dynamic, at(30.0, 0.5), (0.0, 0.0), pair, 0);
     let sensor = ColliderDef { sensor: true, ..rectangle(30.0, 12.0) };
     add(BodyKind::Static, at(0.0, 3.0), (0.0, 0.0), vec![sensor], 0);
     let fast = add(BodyKind::Dynamic, at(-900.0, 90.0), (32767.0, 0.0), vec![], 0);
