@@ -1,5 +1,5 @@
 //! Who is refused before a match, and in which words. And snapshots of a running match, which begin with a hello.
-#![allow(clippy::arithmetic_side_effects, reason = "tests, not the engine")]
+#![allow(clippy::disallowed_types, clippy::arithmetic_side_effects, reason = "tests, not the engine")]
 
 mod common;
 

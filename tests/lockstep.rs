@@ -1,7 +1,7 @@
 //! Matches by ggrs within one process: the network is a queue, so what happens is the same in every run. Peers, a player who
 //! comes in the middle, lockstep by input delay, events that are told once, and the alarm.
 #![cfg(feature = "ggrs")]
-#![allow(clippy::arithmetic_side_effects, reason = "tests, not the engine")]
+#![allow(clippy::disallowed_types, clippy::arithmetic_side_effects, reason = "tests, not the engine")]
 
 mod common;
 
