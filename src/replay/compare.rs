@@ -4,7 +4,7 @@ use super::error::ReplayError;
 use super::evidence::Evidence;
 use super::keyframe::{Keyframe, read_index};
 use super::player::Player;
-use super::skim::{Skimmer, Tick};
+use super::skim::{Rest, Skimmer, Tick};
 use crate::world::Command;
 use std::io::{Read, Seek};
 
@@ -134,7 +134,7 @@ fn common<R: Read + Seek>(inputs: [&mut R; 2]) -> Result<[Option<Keyframe>; 2], 
 /// What a recording knows of the tick that was read last.
 fn account<R: Read>(skimmer: Skimmer<R>) -> Result<Account, ReplayError> {
     let (now, keyframe) = (skimmer.now().clone(), skimmer.keyframe());
-    let (evidence, parts) = skimmer.rest()?;
+    let Rest { evidence, parts } = skimmer.rest()?;
     let (hash, commands, recorded_tick) = (now.hash, now.commands(), now.recorded);
     Ok(Account { hash, commands, evidence, parts, keyframe, recorded_tick })
 }

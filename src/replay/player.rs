@@ -212,18 +212,24 @@ impl<R: Read> Player<R> {
         if computed == recorded {
             return Ok(Some(computed));
         }
-        // An idle tick has no check of its own: the next one says whether the file is as it was written.
-        while !checked {
+        if !checked {
+            self.look_for_check(tick)?;
+        }
+        Err(ReplayError::Diverged { tick, recorded, computed })
+    }
+
+    /// An idle tick has no check of its own: the next one says whether the file is as it was written.
+    fn look_for_check(&mut self, tick: u64) -> Result<(), ReplayError> {
+        loop {
             match self.records.next().map_err(|error| error.at(tick))? {
                 Found::Record { tag: tag::IDLE, .. } => {}
-                Found::Record { .. } | Found::End { .. } => break,
+                Found::Record { .. } | Found::End { .. } => return Ok(()),
                 Found::Cut => {
                     let reason = "a hash differs, and the file ends before a check says whether it was recorded so";
                     return Err(ReplayError::Corrupt { tick, offset: self.records.offset(), reason });
                 }
             }
         }
-        Err(ReplayError::Diverged { tick, recorded, computed })
     }
 
     /// Carries out the commands of the record read last; each has been decoded once already, by `read`.

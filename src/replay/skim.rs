@@ -35,6 +35,12 @@ impl Tick {
     }
 }
 
+/// What a recording says of a tick behind it.
+pub(super) struct Rest {
+    pub(super) evidence: Option<Evidence>,
+    pub(super) parts: Option<(u64, [u64; 9])>,
+}
+
 /// Reads ticks of a recording, each with what is recorded between it and the next.
 pub(super) struct Skimmer<R> {
     player: Player<R>,
@@ -115,14 +121,14 @@ impl<R: Read> Skimmer<R> {
     }
 
     /// Reads the rest for the evidence of the tick read last, and for parts at it or after it.
-    pub(super) fn rest(mut self) -> Result<(Option<Evidence>, Option<(u64, [u64; 9])>), ReplayError> {
+    pub(super) fn rest(mut self) -> Result<Rest, ReplayError> {
         let tick = self.now.tick;
         let (mut evidence, mut parts) = (None, None);
         loop {
             evidence = evidence.or_else(|| self.evidence.iter().find(|kept| kept.tick() == tick).cloned());
             parts = parts.or(self.now.parts.map(|parts| (self.now.tick, parts)));
             if !self.next()? {
-                return Ok((evidence, parts));
+                return Ok(Rest { evidence, parts });
             }
         }
     }

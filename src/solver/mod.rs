@@ -193,6 +193,7 @@ impl Solver {
 
     /// Impacts and substeps, after the bodies have moved as if nothing touched them; bodies that were struck or pushed are
     /// put where that brings them. `watch` sees what each substep leaves.
+    #[allow(clippy::too_many_arguments, reason = "what a tick is made of, and who looks")]
     pub(crate) fn run(
         &mut self,
         touch: &mut Touch,

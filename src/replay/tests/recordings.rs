@@ -6,15 +6,11 @@ use crate::World;
 use crate::replay::{Comparison, Evidence, Player, Recorder, Recording, Segment, compare, recompute};
 use std::io::Cursor;
 
+type Peers = ([Cursor<Vec<u8>>; 2], World, super::faults::Done);
+
 /// Two peers of a game: the second one's memory has a fault before a tick, and both hear of it some ticks later. Gives both files,
 /// what the fault did, and the worlds before.
-fn peers(
-    kind: &Kind,
-    fault: u64,
-    ticks: u64,
-    flights: [u32; 2],
-    seed: u64,
-) -> Option<([Cursor<Vec<u8>>; 2], World, super::faults::Done)> {
+fn peers(kind: &Kind, fault: u64, ticks: u64, flights: [u32; 2], seed: u64) -> Option<Peers> {
     let options = |flight_ticks| Recording { keyframe_seconds: 1, flight_ticks, ..Recording::default() };
     let start = || Cursor::new(Vec::new());
     let game = |flight| Recorder::with(world_of_everything(), start(), options(flight)).expect("memory");
