@@ -16,6 +16,8 @@
 //! state; sprites and sounds live elsewhere. The program ends with the test that every lockstep game needs: each tick is computed
 //! again, up to seven times, from restored states, and must give the same.
 //!
+// Without the feature there is nothing to point at.
+#![cfg_attr(not(feature = "ggrs"), allow(rustdoc::broken_intra_doc_links))]
 #![cfg_attr(feature = "ggrs", doc = "```")]
 #![cfg_attr(not(feature = "ggrs"), doc = "```ignore")]
 //! use ggrs::SessionBuilder;
