@@ -18,6 +18,8 @@
 //! | `snapshot` | save, load, hash, diff, frames |
 //! | `rollback` | the last ticks, to go back to |
 //! | [`replay`] | recording, playing, verifying |
+//! | [`hello`] | whether two peers compute the same, asked before a session |
+//! | `lockstep` | lockstep and rollback sessions over a network (feature `ggrs`) |
 //! | [`guide`] | chapters: what is promised, and why |
 // Allowed in solver/avx2.rs and solver/avx512.rs alone.
 #![deny(unsafe_code, clippy::undocumented_unsafe_blocks)]
@@ -28,6 +30,9 @@ mod broad;
 mod contact;
 pub mod geom;
 pub mod guide;
+pub mod hello;
+#[cfg(feature = "ggrs")]
+pub mod lockstep;
 mod motion;
 mod narrow;
 pub mod num;

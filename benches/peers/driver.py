@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Runs the engines' programs on the scenes, interleaved and on one processor; each line they print is kept in $PEERS/raw.
 
-usage: driver.py [--rounds N] [--only speed,accuracy,hard,snapshot] [--scenes a,b] [--engines a,b] [--cpu 0] [--keep]
+usage: driver.py [--rounds N] [--only speed,accuracy,hard,snapshot,rollback] [--scenes a,b] [--engines a,b] [--cpu 0] [--keep]
 
 In each round every engine has its turn, in an order that alternates. Speed scenes have N rounds (5), those of more than 2000
-bodies 3; scenes with a known outcome 3, at every setting; hard ones and snapshots 1 and 2.
+bodies 3; scenes with a known outcome 3, at every setting; hard ones 1, snapshots 2, rollbacks N.
 """
 import argparse
 import glob
@@ -20,10 +20,10 @@ CHIPMUNK = [f"{PEERS}/venv/bin/python", f"{HERE}/chipmunk/peer_chipmunk.py", "--
 
 # Name: command, groups, and the settings to go through: substeps, solver iterations; the engine's default first.
 ENGINES = {
-    "ours": ([f"{PEERS}/bin/ours"], {"speed", "accuracy", "hard", "snapshot"}, [10, 1, 2, 4, 8, 16]),
-    "box2d": ([f"{PEERS}/bin/box2d"], {"speed", "accuracy", "hard", "snapshot"}, [4, 1, 2, 8, 16]),
+    "ours": ([f"{PEERS}/bin/ours"], {"speed", "accuracy", "hard", "snapshot", "rollback"}, [10, 1, 2, 4, 8, 16]),
+    "box2d": ([f"{PEERS}/bin/box2d"], {"speed", "accuracy", "hard", "snapshot", "rollback"}, [4, 1, 2, 8, 16]),
     "box2d-double": ([f"{PEERS}/bin/box2d-double"], {"accuracy"}, [4]),
-    "rapier": ([f"{PEERS}/bin/rapier"], {"speed", "accuracy", "hard", "snapshot"}, [4, 1, 2, 8, 16]),
+    "rapier": ([f"{PEERS}/bin/rapier"], {"speed", "accuracy", "hard", "snapshot", "rollback"}, [4, 1, 2, 8, 16]),
     "chipmunk": (CHIPMUNK, {"speed", "accuracy", "hard", "snapshot"}, [10, 1, 2, 4, 8, 16]),
 }
 SNAPSHOTS = {"s1_pyramid40", "s2_pile1000"}
@@ -54,7 +54,7 @@ def call(command, cpu):
 def main():
     ap = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     ap.add_argument("--rounds", type=int, default=5)
-    ap.add_argument("--only", default="speed,accuracy,hard,snapshot")
+    ap.add_argument("--only", default="speed,accuracy,hard,snapshot,rollback")
     ap.add_argument("--scenes")
     ap.add_argument("--engines")
     ap.add_argument("--cpu", type=int, default=0)
@@ -69,7 +69,7 @@ def main():
         for scene, bodies in scenes(group):
             if a.scenes and scene not in a.scenes.split(","):
                 continue
-            rounds = {"speed": min(a.rounds, 3) if bodies > 2000 else a.rounds, "accuracy": 3, "hard": 1}.get(group, 2)
+            rounds = {"speed": min(a.rounds, 3) if bodies > 2000 else a.rounds, "accuracy": 3, "hard": 1, "rollback": a.rounds}.get(group, 2)
             runs = [(n, s) for n in names if group in ENGINES[n][1]
                     for s in (ENGINES[n][2] if group == "accuracy" else ENGINES[n][2][:1])]
             for turn in range(rounds):
@@ -80,6 +80,8 @@ def main():
                                                   "--scene", scene, "--substeps", str(setting)]
                     if group == "snapshot":
                         command += ["--steps", "30", "--snapshot", "300"]
+                    if group == "rollback":
+                        command += ["--steps", "30", "--rollback", "900"]
                     line, took = call(command, a.cpu)
                     if turn > 0:
                         line.pop("samples", None)  # those of the first round, if the hash is the same

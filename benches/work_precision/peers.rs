@@ -29,6 +29,15 @@ const SPEED: [(&str, &str); 10] = [
     ("s7_chain100", "chain of 100 hinges"),
 ];
 
+/// The scenes of rollbacks.
+const ROLLBACK: [(&str, &str); 5] = [
+    ("r_pile50", "pile of 50 polygons"),
+    ("r_pile200", "pile of 200 polygons"),
+    ("r_pile820", "pile of 820 polygons"),
+    ("r_pile2000", "pile of 2000 polygons"),
+    ("r_pyramid820", "pyramid of 820 boxes"),
+];
+
 fn legend(engines: usize) -> Vec<(&'static str, usize)> {
     ENGINES[..engines].iter().enumerate().map(|(style, (_, name))| (*name, style)).collect()
 }
@@ -226,6 +235,25 @@ fn snapshots(table: &Table) -> String {
     markdown(&["scene", "engine", "what", "best, or whether", "median", "size"], &rows.collect::<Vec<_>>())
 }
 
+fn rollbacks(table: &Table) -> String {
+    let row = |(scene, what): &(&str, &str)| {
+        let cell = |(engine, _): &(&str, &str)| {
+            if *engine == "chipmunk" {
+                return "its copies go on differently".into();
+            }
+            let Some(row) = table.find(&[("scene", scene), ("engine", engine)]) else { return "not run".into() };
+            let number = |column| table.number(row, column).unwrap_or(f64::NAN);
+            let same = if table.get(row, "same") == "true" { "" } else { ", **goes on differently**" };
+            let [back, again] = ["back_us", "again_us"].map(|column| figures(number(column)));
+            format!("**{:.0}** ({back}; {again}){same}", number("ticks_per_frame"))
+        };
+        [what.to_string()].into_iter().chain(ENGINES[..4].iter().map(cell)).collect()
+    };
+    let mut head = vec!["ticks a frame"];
+    head.extend(ENGINES[..4].iter().map(|(_, name)| *name));
+    markdown(&head, &ROLLBACK.iter().map(row).collect::<Vec<_>>())
+}
+
 /// The tables behind the diagrams.
 pub fn tables(folder: &Path) -> String {
     let file = |name: &str| Table::read(&folder.join(name));
@@ -250,6 +278,13 @@ pub fn tables(folder: &Path) -> String {
     if let Some(table) = file("peers_snapshots.csv") {
         page += "\n### Saving and restoring\n\n";
         page += &snapshots(&table);
+    }
+    if let Some(table) = file("peers_rollback.csv") {
+        page += "\n### Rollback\n\nHow many ticks can be computed again in a frame of 16.7 ms: going back by 8 ticks once, then each \
+                 tick with its state kept as the first time. In brackets going back, and a tick with keeping it, in µs, medians of the \
+                 best round. Here a ring of `Rollback` does it, in Box2D its world's image, in Rapier a clone of its sets. No \
+                 hash is computed.\n\n";
+        page += &rollbacks(&table);
     }
     page
 }

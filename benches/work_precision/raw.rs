@@ -142,6 +142,30 @@ fn snapshots(runs: &Runs) -> String {
     out
 }
 
+/// A frame at 60 Hz, in nanoseconds.
+const FRAME: f64 = 1e9 / 60.0;
+
+/// What going back costs, what a tick costs when it is computed again and kept, and how many of them a frame has room for. Of the
+/// best round, by its medians: the mean is what others on the machine make of it.
+fn rollbacks(runs: &Runs) -> String {
+    let mut out = String::from("scene,engine,bodies,back_us,again_us,ticks_per_frame,same\n");
+    for ([_, scene, engine, _], lines) in runs.iter().filter(|(k, _)| k[0] == "rollback") {
+        let best = |field: &str| {
+            let median = |line: &Value| {
+                let ns: Vec<f64> = line[field].as_array()?.iter().filter_map(Value::as_f64).collect();
+                (!ns.is_empty()).then(|| Cost::of(&ns).median)
+            };
+            lines.iter().filter_map(median).min_by(f64::total_cmp)
+        };
+        let (Some(back), Some(again)) = (best("back_ns"), best("again_ns")) else { continue };
+        let ticks = ((FRAME - back) / again).floor().max(0.0);
+        let bodies = lines[0]["bodies"].as_u64().unwrap_or(0);
+        let same = lines.iter().all(|line| line["same"] == true);
+        let _ = writeln!(out, "{scene},{engine},{bodies},{:.1},{:.1},{ticks},{same}", back * 1e-3, again * 1e-3);
+    }
+    out
+}
+
 fn engines(runs: &Runs) -> String {
     let mut versions: BTreeMap<&str, String> = BTreeMap::new();
     for ([_, _, engine, _], lines) in runs.iter().filter(|(_, lines)| lines[0]["version"].is_string()) {
@@ -167,6 +191,9 @@ pub fn write(peers: &Path, report: &Path) {
     }
     if has("snapshot") {
         put("peers_snapshots.csv", snapshots(&runs));
+    }
+    if has("rollback") {
+        put("peers_rollback.csv", rollbacks(&runs));
     }
     put("peers_engines.csv", engines(&runs));
     for (key, lines) in &runs {

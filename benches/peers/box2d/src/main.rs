@@ -3,7 +3,7 @@
 //! Sleeping is off, and the speed below which nothing bounces is 0 instead of 1 m/s: else it could not be compared.
 
 use boxdd_sys::ffi::*;
-use peer_scenes::runner::{Cost, Engine, Snapshot, State, count, run};
+use peer_scenes::runner::{Cost, Engine, Snapshot, State, WINDOW, count, run};
 use peer_scenes::{Geom, Kind, Scene};
 use std::time::Instant;
 
@@ -12,6 +12,8 @@ struct B2 {
     bodies: Vec<b2BodyId>,
     dt: f32,
     substeps: i32,
+    /// Images of the world, and how long each is.
+    kept: Vec<(Vec<u8>, i32)>,
 }
 
 fn v(p: [f64; 2]) -> b2Vec2 {
@@ -81,7 +83,7 @@ fn build(s: &Scene, args: &[String]) -> Result<B2, &'static str> {
             d.base.localFrameB.p = v(h.lb);
             b2CreateRevoluteJoint(world, &d);
         }
-        Ok(B2 { world, bodies, dt: s.dt as f32, substeps })
+        Ok(B2 { world, bodies, dt: s.dt as f32, substeps, kept: vec![(vec![], 0); WINDOW] })
     }
 }
 
@@ -109,6 +111,25 @@ impl Engine for B2 {
             let (l, w) = (b2Body_GetLinearVelocity(id), b2Body_GetAngularVelocity(id));
             [p.x as f64, p.y as f64, (q.s as f64).atan2(q.c as f64), l.x as f64, l.y as f64, w as f64]
         }
+    }
+
+    fn keep(&mut self, at: usize) {
+        let (image, length) = &mut self.kept[at];
+        // Into memory that is used again; asked for its size only where that does not do.
+        unsafe {
+            *length = b2World_Snapshot(self.world, image.as_mut_ptr(), image.len() as i32);
+            if *length == 0 || *length > image.len() as i32 {
+                let need = b2World_Snapshot(self.world, std::ptr::null_mut(), 0);
+                image.resize(need as usize + need as usize / 4, 0);
+                *length = b2World_Snapshot(self.world, image.as_mut_ptr(), image.len() as i32);
+            }
+        }
+        assert!(*length > 0, "Box2D refuses to save");
+    }
+
+    fn back(&mut self, at: usize) {
+        let (image, length) = &self.kept[at];
+        assert!(unsafe { b2World_Restore(self.world, image.as_ptr(), *length) }, "Box2D refuses its own image");
     }
 
     fn snapshot(&mut self, reps: usize, probe: &mut dyn FnMut(&mut Self) -> u64) -> Snapshot {

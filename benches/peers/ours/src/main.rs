@@ -1,16 +1,19 @@
 //! This project's engine behind the peers' protocol. `--substeps N`: other substeps than the default.
 
-use peer_scenes::runner::{Cost, Engine, Snapshot, State, count, run};
+use peer_scenes::runner::{Cost, Engine, Snapshot, State, WINDOW, count, run};
 use peer_scenes::{Body, Geom, Kind, Scene, V};
 use std::time::Instant;
 use tamias2d::{
     Angle, AngularVelocity, BodyDef, BodyId, BodyKind, ColliderDef, Commands, Density, Friction, Length, Restitution,
-    Shape, Vec2, World, WorldDef,
+    Rollback, Shape, Vec2, World, WorldDef,
 };
 
 struct Ours {
     world: World,
     ids: Vec<BodyId>,
+    ring: Rollback,
+    /// The tick that was kept as the first of the rollback.
+    first: u64,
 }
 
 const RANGE: &str = "scenes are in range";
@@ -70,7 +73,7 @@ fn build(scene: &Scene, args: &[String]) -> Result<Ours, &'static str> {
         world.create_body(&def).expect(RANGE)
     };
     let ids = scene.bodies.iter().map(create).collect();
-    Ok(Ours { world, ids })
+    Ok(Ours { world, ids, ring: Rollback::new(WINDOW as u32), first: 0 })
 }
 
 impl Engine for Ours {
@@ -86,6 +89,17 @@ impl Engine for Ours {
         let body = self.world.body(self.ids[body]).expect("nothing is destroyed");
         let ((x, y), (vx, vy)) = (body.position().to_f64(), body.velocity().to_f64());
         [x, y, body.angle().to_radians_f64(), vx, vy, body.angular_velocity().to_f64()]
+    }
+
+    fn keep(&mut self, at: usize) {
+        self.ring.save(&self.world);
+        if at == 0 {
+            self.first = self.world.tick();
+        }
+    }
+
+    fn back(&mut self, at: usize) {
+        self.ring.restore(&mut self.world, self.first + at as u64).expect("it was kept");
     }
 
     fn snapshot(&mut self, reps: usize, probe: &mut dyn FnMut(&mut Self) -> u64) -> Snapshot {

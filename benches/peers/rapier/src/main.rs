@@ -1,6 +1,6 @@
 //! Rapier behind the peers' protocol. `--substeps N`: other solver iterations than its default of 4. Sleeping is off.
 
-use peer_scenes::runner::{Cost, Engine, Snapshot, State, count, run};
+use peer_scenes::runner::{Cost, Engine, Snapshot, State, WINDOW, count, run};
 use peer_scenes::{Geom, Kind, Scene};
 use rapier2d::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -26,6 +26,7 @@ struct Ra {
     w: Saved,
     pipeline: PhysicsPipeline,
     handles: Vec<RigidBodyHandle>,
+    kept: Vec<Option<Saved>>,
 }
 
 fn v(p: [f64; 2]) -> Vector {
@@ -80,7 +81,7 @@ fn build(s: &Scene, args: &[String]) -> Result<Ra, &'static str> {
         let joint = RevoluteJointBuilder::new().local_anchor1(v(j.la)).local_anchor2(v(j.lb)).contacts_enabled(false);
         w.impulse_joints.insert(handles[j.a], handles[j.b], joint, true);
     }
-    Ok(Ra { w, pipeline: PhysicsPipeline::new(), handles })
+    Ok(Ra { w, pipeline: PhysicsPipeline::new(), handles, kept: vec![None; WINDOW] })
 }
 
 impl Engine for Ra {
@@ -112,6 +113,14 @@ impl Engine for Ra {
         let rb = &self.w.bodies[self.handles[b]];
         let (p, q, l) = (rb.translation(), rb.rotation(), rb.linvel());
         [p.x as f64, p.y as f64, (q.im as f64).atan2(q.re as f64), l.x as f64, l.y as f64, rb.angvel() as f64]
+    }
+
+    fn keep(&mut self, at: usize) {
+        self.kept[at] = Some(self.w.clone());
+    }
+
+    fn back(&mut self, at: usize) {
+        self.w = self.kept[at].clone().expect("it was kept");
     }
 
     fn snapshot(&mut self, reps: usize, probe: &mut dyn FnMut(&mut Self) -> u64) -> Snapshot {

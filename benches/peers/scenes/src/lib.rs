@@ -59,7 +59,7 @@ pub struct Hinge {
 #[derive(Clone, Debug)]
 pub struct Scene {
     pub name: &'static str,
-    /// `speed`, `accuracy` or `hard`.
+    /// `speed`, `rollback`, `accuracy` or `hard`.
     pub group: &'static str,
     pub gravity: V,
     pub dt: f64,
@@ -101,6 +101,7 @@ impl Scene {
 
 pub fn all() -> Vec<Scene> {
     let mut scenes = speed::all();
+    scenes.extend(speed::rollback());
     scenes.extend(taken::accuracy());
     scenes.extend(taken::hard());
     scenes

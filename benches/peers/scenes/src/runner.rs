@@ -1,4 +1,5 @@
-//! The protocol: `PROGRAM --group GROUP --scene NAME [--steps N] [--snapshot WARM]` runs a scene and prints a line of JSON.
+//! The protocol: `PROGRAM --group GROUP --scene NAME [--steps N] [--snapshot WARM] [--rollback WARM]` runs a scene and prints
+//! a line of JSON.
 
 use crate::Scene;
 use crate::json::num;
@@ -27,7 +28,14 @@ pub trait Engine {
     fn snapshot(&mut self, _reps: usize, _probe: &mut dyn FnMut(&mut Self) -> u64) -> Snapshot {
         (vec![], vec![])
     }
+    /// Keeps the present state as that of a tick of a rollback, 0 to [`WINDOW`]; memory of earlier ones is used again.
+    fn keep(&mut self, at: usize);
+    /// Goes back to what was kept.
+    fn back(&mut self, at: usize);
 }
+
+/// How many ticks a rollback goes back.
+pub const WINDOW: usize = 8;
 
 /// FNV-1a of the bits of all states.
 pub fn hash_states<E: Engine>(engine: &E, bodies: &[usize]) -> u64 {
@@ -77,6 +85,33 @@ fn snapshot<E: Engine>(mut engine: E, ids: &[usize], warm: usize, reps: usize) -
     let costs: Vec<String> = costs.iter().map(cost).collect();
     let facts: Vec<String> = facts.iter().map(|(name, is)| format!("\"{name}\":{is}")).collect();
     format!("\"warm\":{warm},\"costs\":[{}],\"facts\":{{{}}}", costs.join(","), facts.join(","))
+}
+
+/// What a rollback costs: going back by [`WINDOW`] ticks, and each of these ticks again, kept as the first time.
+fn rollback<E: Engine>(mut engine: E, ids: &[usize], warm: usize, reps: usize) -> String {
+    for _ in 0..warm {
+        engine.step();
+    }
+    let (mut back, mut again, mut same) = (vec![], vec![], true);
+    for _ in 0..reps {
+        for at in 0..WINDOW {
+            engine.keep(at);
+            engine.step();
+        }
+        let there = hash_states(&engine, ids);
+        let begin = Instant::now();
+        engine.back(0);
+        back.push(begin.elapsed().as_nanos() as u64);
+        for at in 0..WINDOW {
+            let begin = Instant::now();
+            engine.keep(at);
+            engine.step();
+            again.push(begin.elapsed().as_nanos() as u64);
+        }
+        same &= hash_states(&engine, ids) == there;
+    }
+    let list = |ns: &[u64]| ns.iter().map(u64::to_string).collect::<Vec<_>>().join(",");
+    format!("\"warm\":{warm},\"back_ns\":[{}],\"again_ns\":[{}],\"same\":{same}", list(&back), list(&again))
 }
 
 /// Nanoseconds for which this thread had the processor in each window, nothing but steps being done.
@@ -139,9 +174,11 @@ pub fn run<E: Engine>(build: impl Fn(&Scene, &[String]) -> Result<E, &'static st
     };
     let (steps, ids, (id, version)) = (count(&args, "--steps", scene.steps), scene.tracked(), engine.id());
     let bodies = scene.bodies.len();
-    let rest = match option(&args, "--snapshot") {
-        Some(warm) => snapshot(engine, &ids, warm.parse().expect("--snapshot WARM"), steps.clamp(1, 200)),
-        None => {
+    let warm = |name: &str| option(&args, name).map(|warm| warm.parse().unwrap_or_else(|_| panic!("{name} WARM")));
+    let rest = match (warm("--snapshot"), warm("--rollback")) {
+        (Some(warm), _) => snapshot(engine, &ids, warm, steps.clamp(1, 200)),
+        (None, Some(warm)) => rollback(engine, &ids, warm, steps.clamp(1, 200)),
+        (None, None) => {
             // What tells its states at every step is timed by a run of its own.
             let alone = (scene.track_every == 1).then(|| windows(&mut engine, &scene));
             let Ok(again) = build(&scene, &args) else { unreachable!("it was built before") };

@@ -216,3 +216,15 @@ pub fn all() -> Vec<Scene> {
         chain(),
     ]
 }
+
+/// What rollbacks are measured on: piles that have settled, and the pyramid that others are measured on.
+pub fn rollback() -> Vec<Scene> {
+    let scenes = [
+        pile("r_pile50", 50, 8, 10.0),
+        pile("r_pile200", 200, 13, 16.0),
+        pile("r_pile820", 820, 24, 28.0),
+        pile("r_pile2000", 2000, 36, 42.0),
+        pyramid("r_pyramid820", 40, 1200, 0),
+    ];
+    scenes.into_iter().map(|scene| Scene { group: "rollback", ..scene }).collect()
+}
