@@ -19,7 +19,7 @@
 //! | `rollback` | the last ticks, to go back to |
 //! | [`replay`] | recording, playing, verifying |
 //! | [`guide`] | chapters: what is promised, and why |
-// Allowed in solver/avx2.rs alone.
+// Allowed in solver/avx2.rs and solver/avx512.rs alone.
 #![deny(unsafe_code, clippy::undocumented_unsafe_blocks)]
 #![deny(missing_docs, clippy::arithmetic_side_effects)]
 

@@ -319,7 +319,8 @@ impl Broad {
         }
     }
 
-    /// Visits every proxy whose box of the last update overlaps `aabb`, and some whose box did not; in no useful order.
+    /// Visits every proxy whose box of the last update overlaps `aabb`, once and in no useful order, and some that move whose box
+    /// did not; of those that do not move no other: a caller who asks less exactly must not hear of the broad phase's history.
     pub(crate) fn query(&self, aabb: &Aabb, mut visit: impl FnMut(u32)) {
         let world = Rect::new(aabb);
         let local = world.seen_from(self.frame);

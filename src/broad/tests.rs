@@ -121,6 +121,22 @@ fn check(broad: &Broad, model: &Model) {
     assert!(pairs.iter().all(|&(a, b)| wanted(model, a, b)), "unwanted");
     let met: Vec<_> = pairs.iter().copied().filter(|&(a, b)| overlap(model, a, b)).collect();
     assert_eq!(met, truth(model));
+    for area in model.iter().flatten().take(8).map(Proxy::aabb) {
+        check_query(broad, model, &area);
+    }
+}
+
+/// Everything that `query` promises: of what is fixed no more than what overlaps, whatever came before.
+fn check_query(broad: &Broad, model: &Model, area: &Aabb) {
+    let mut visited = vec![0; model.len()];
+    broad.query(area, |slot| visited[slot as usize] += 1);
+    for (proxy, visits) in model.iter().zip(visited) {
+        match proxy {
+            None => assert_eq!(visits, 0, "a proxy that is not there"),
+            Some(proxy) if proxy.aabb().overlaps(area) => assert_eq!(visits, 1),
+            Some(proxy) => assert!(visits <= u32::from(proxy.moves), "a fixed proxy that is elsewhere"),
+        }
+    }
 }
 
 /// One random thing that a caller does, told to all.

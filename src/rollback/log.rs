@@ -17,7 +17,7 @@ use crate::contact::{Collision, Event, EventId};
 /// let ball = BodyDef { position: Vec2::from_f64(0.0, 1.2)?, colliders: vec![disc()], ..BodyDef::default() };
 /// world.create_body(&ball)?;
 ///
-/// let (mut ring, mut log) = (Rollback::new(9), EventLog::new(9));
+/// let (mut ring, mut log) = (Rollback::new(17), EventLog::new(17));
 /// let mut sounds = Vec::new();
 /// let mut tick = |world: &mut World, ring: &mut Rollback| {
 ///     ring.save(world);
@@ -29,9 +29,9 @@ use crate::contact::{Collision, Event, EventId};
 /// for _ in 0..20 {
 ///     tick(&mut world, &mut ring);
 /// }
-/// // The input of another player comes late: six ticks again, in which the ball lands once more.
-/// ring.restore(&mut world, 10)?;
-/// for _ in 10..20 {
+/// // The input of another player comes late: twelve ticks again, in which the ball lands once more.
+/// ring.restore(&mut world, 8)?;
+/// for _ in 8..20 {
 ///     tick(&mut world, &mut ring);
 /// }
 /// assert_eq!(sounds.len(), 1);

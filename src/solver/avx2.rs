@@ -1,6 +1,6 @@
 //! Eight lanes side by side in AVX2's instructions: the words that `sweep` is written in.
 //!
-//! The only file with `unsafe`: all of it are instructions that a processor may not have, behind values that exist only
+//! One of the two files with `unsafe`: all of it are instructions that a processor may not have, behind values that exist only
 //! where it has them. Products of 32 bits with 64-bit sums go four at a time, the even lanes and the odd ones.
 #![allow(unsafe_code, reason = "instructions that the processor was asked for, see `Avx2`")]
 
@@ -10,6 +10,7 @@ use super::mover::Mover;
 use super::rows::{Block, LANES, Lane};
 use super::scales::Scales;
 use super::sweep;
+use super::words::{self, Eight, Factor as _, Mask as _, Narrow as _, Wide as _, Words};
 
 /// That this processor has AVX2. Of it come all values of the types below.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +28,11 @@ pub(super) struct Wide(__m256i, __m256i);
 #[derive(Clone, Copy)]
 pub(super) struct Factor(__m256i, __m256i);
 
-/// A vector of one instruction each. Sound because [`Narrow`], [`Wide`] and [`Factor`] exist only where there is AVX2.
+/// All bits of the chosen of eight lanes of 32 bits.
+#[derive(Clone, Copy)]
+pub(super) struct Mask(__m256i);
+
+/// A vector of one instruction each. Sound because [`Narrow`], [`Wide`], [`Factor`] and [`Mask`] exist only where there is AVX2.
 macro_rules! vector {
     ($($call:tt)*) => {{
         // SAFETY: the processor has AVX2: an operand, or an `Avx2`, says so. Pointers come from references to as much.
@@ -58,7 +63,7 @@ impl Avx2 {
             movers: &mut [Mover],
             scales: &Scales,
         ) -> (u8, u8) {
-            sweep::sweep::<BIASED>(avx2, block, lanes, movers, scales)
+            sweep::sweep::<_, BIASED>(avx2, block, lanes, movers, scales)
         }
         // SAFETY: `self` says that the processor has AVX2.
         unsafe { with_avx2::<BIASED>(self, block, lanes, movers, scales) }
@@ -74,232 +79,45 @@ impl Avx2 {
         // SAFETY: `self` says that the processor has AVX2.
         unsafe { with_avx2(self, block, movers) }
     }
+}
+
+impl Words for Avx2 {
+    type Narrow = Narrow;
+    type Wide = Wide;
+    type Factor = Factor;
+    type Mask = Mask;
 
     #[inline(always)]
-    pub(super) fn narrow(self, value: i32) -> Narrow {
+    fn narrow(self, value: i32) -> Narrow {
         Narrow(vector!(_mm256_set1_epi32(value)))
     }
 
     #[inline(always)]
-    pub(super) fn wide(self, value: i64) -> Wide {
+    fn wide(self, value: i64) -> Wide {
         let all = vector!(_mm256_set1_epi64x(value));
         Wide(all, all)
     }
 
     #[inline(always)]
-    pub(super) fn load(self, lane: &Lane) -> Narrow {
+    fn load(self, lane: &Lane) -> Narrow {
         Narrow(vector!(_mm256_loadu_si256(lane.as_ptr().cast())))
     }
 
     #[inline(always)]
-    pub(super) fn factor(self, lane: &Lane) -> Factor {
-        self.load(lane).factor()
-    }
-
-    /// Those of eight contacts that are to be solved: all bits of their lanes.
-    #[inline(always)]
-    pub(super) fn chosen(self, bodies: &[[u32; LANES]; 2], lanes: u8) -> Narrow {
+    fn chosen(self, bodies: &[[u32; LANES]; 2], lanes: u8) -> Mask {
         let bits = vector!(_mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128));
         let a = vector!(_mm256_loadu_si256(bodies[0].as_ptr().cast()));
         let b = vector!(_mm256_loadu_si256(bodies[1].as_ptr().cast()));
         let same = vector!(_mm256_cmpeq_epi32(a, b));
         let set = vector!(_mm256_cmpeq_epi32(_mm256_and_si256(self.narrow(lanes.into()).0, bits), bits));
-        Narrow(vector!(_mm256_andnot_si256(same, set)))
-    }
-}
-
-impl Narrow {
-    #[inline(always)]
-    pub(super) fn store(self, lane: &mut Lane) {
-        vector!(_mm256_storeu_si256(lane.as_mut_ptr().cast(), self.0));
+        Mask(vector!(_mm256_andnot_si256(same, set)))
     }
 
     #[inline(always)]
-    pub(super) fn factor(self) -> Factor {
-        Factor(self.0, vector!(_mm256_srli_epi64::<32>(self.0)))
-    }
-
-    #[inline(always)]
-    pub(super) fn add(self, other: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_add_epi32(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    pub(super) fn sub(self, other: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_sub_epi32(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    pub(super) fn min(self, other: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_min_epi32(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    pub(super) fn max(self, other: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_max_epi32(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    pub(super) fn abs(self) -> Narrow {
-        Narrow(vector!(_mm256_abs_epi32(self.0)))
-    }
-
-    /// Divided by 2^SHIFT, rounded down.
-    #[inline(always)]
-    pub(super) fn shifted<const SHIFT: i32>(self) -> Narrow {
-        Narrow(vector!(_mm256_srai_epi32::<SHIFT>(self.0)))
-    }
-
-    #[inline(always)]
-    pub(super) fn and(self, other: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_and_si256(self.0, other.0)))
-    }
-
-    #[inline(always)]
-    pub(super) fn or(self, other: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_or_si256(self.0, other.0)))
-    }
-
-    /// All bits of the lanes that are greater.
-    #[inline(always)]
-    pub(super) fn above(self, other: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_cmpgt_epi32(self.0, other.0)))
-    }
-
-    /// Of a mask of whole lanes: where it is set `yes`, else `no`.
-    #[inline(always)]
-    pub(super) fn pick(self, yes: Narrow, no: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_blendv_epi8(no.0, yes.0, self.0)))
-    }
-
-    /// Whether any bit is set.
-    #[inline(always)]
-    pub(super) fn any(self) -> bool {
-        vector!(_mm256_testz_si256(self.0, self.0)) == 0
-    }
-
-    /// By lane, from the lowest bit, the sign.
-    #[inline(always)]
-    pub(super) fn signs(self) -> u8 {
-        vector!(_mm256_movemask_ps(_mm256_castsi256_ps(self.0))) as u8
-    }
-}
-
-impl Factor {
-    /// The exact products.
-    #[inline(always)]
-    pub(super) fn mul(self, other: Factor) -> Wide {
-        Wide(vector!(_mm256_mul_epi32(self.0, other.0)), vector!(_mm256_mul_epi32(self.1, other.1)))
-    }
-
-    #[inline(always)]
-    pub(super) fn narrow(self) -> Narrow {
-        Narrow(vector!(_mm256_blend_epi32::<0b1010_1010>(self.0, _mm256_slli_epi64::<32>(self.1))))
-    }
-}
-
-impl Wide {
-    #[inline(always)]
-    pub(super) fn add(self, other: Wide) -> Wide {
-        Wide(vector!(_mm256_add_epi64(self.0, other.0)), vector!(_mm256_add_epi64(self.1, other.1)))
-    }
-
-    #[inline(always)]
-    pub(super) fn sub(self, other: Wide) -> Wide {
-        Wide(vector!(_mm256_sub_epi64(self.0, other.0)), vector!(_mm256_sub_epi64(self.1, other.1)))
-    }
-
-    #[inline(always)]
-    pub(super) fn or(self, other: Wide) -> Wide {
-        Wide(vector!(_mm256_or_si256(self.0, other.0)), vector!(_mm256_or_si256(self.1, other.1)))
-    }
-
-    /// All bits of the lanes that are greater.
-    #[inline(always)]
-    pub(super) fn above(self, other: Wide) -> Wide {
-        Wide(vector!(_mm256_cmpgt_epi64(self.0, other.0)), vector!(_mm256_cmpgt_epi64(self.1, other.1)))
-    }
-
-    /// Of a mask of whole lanes: where it is set `yes`, else `no`.
-    #[inline(always)]
-    pub(super) fn pick(self, yes: Wide, no: Wide) -> Wide {
-        Wide(vector!(_mm256_blendv_epi8(no.0, yes.0, self.0)), vector!(_mm256_blendv_epi8(no.1, yes.1, self.1)))
-    }
-
-    #[inline(always)]
-    pub(super) fn min(self, other: Wide) -> Wide {
-        self.above(other).pick(other, self)
-    }
-
-    #[inline(always)]
-    pub(super) fn max(self, other: Wide) -> Wide {
-        self.above(other).pick(self, other)
-    }
-
-    /// Shifted right, zeros coming in.
-    #[inline(always)]
-    pub(super) fn shifted<const SHIFT: i32>(self) -> Wide {
-        Wide(vector!(_mm256_srli_epi64::<SHIFT>(self.0)), vector!(_mm256_srli_epi64::<SHIFT>(self.1)))
-    }
-
-    /// The lower halves.
-    #[inline(always)]
-    pub(super) fn low(self) -> Factor {
-        Factor(self.0, self.1)
-    }
-
-    /// Masks of 64 bits as masks of 32.
-    #[inline(always)]
-    pub(super) fn mask(self) -> Narrow {
-        Narrow(vector!(_mm256_blend_epi32::<0b1010_1010>(self.0, self.1)))
-    }
-
-    /// `self + 2^(SHIFT−1)`, and one less of what is negative: shifting that rounds to nearest and odd.
-    #[inline(always)]
-    pub(super) fn half<const SHIFT: i32>(self, avx2: Avx2) -> Wide {
-        let zero = avx2.wide(0);
-        self.add(zero.above(self)).add(avx2.wide((1 << SHIFT) >> 1))
-    }
-
-    /// `self / 2^SHIFT` to nearest and odd, if it fits 32 bits.
-    #[inline(always)]
-    pub(super) fn round<const SHIFT: i32>(self, avx2: Avx2) -> Factor {
-        self.half::<SHIFT>(avx2).shifted::<SHIFT>().low()
-    }
-
-    /// `self / 2^28` rounded down, limited to ±2³⁰.
-    #[inline(always)]
-    pub(super) fn limited(self, avx2: Avx2) -> Narrow {
-        // By the upper halves: the quotient is in ±2³⁰ if those are in ±2²⁶.
-        let high = Narrow(vector!(_mm256_blend_epi32::<0b1010_1010>(_mm256_srli_epi64::<32>(self.0), self.1)));
-        let inner = self.shifted::<28>().low().narrow();
-        let inner = high.above(avx2.narrow((1 << 26) - 1)).pick(avx2.narrow(1 << 30), inner);
-        avx2.narrow(-(1 << 26)).above(high).pick(avx2.narrow(-(1 << 30)), inner)
-    }
-
-    /// `self / 2^28` to nearest and odd, limited to ±2³⁰.
-    #[inline(always)]
-    pub(super) fn round_limited(self, avx2: Avx2) -> Narrow {
-        self.half::<28>(avx2).limited(avx2)
-    }
-}
-
-/// Eight movers.
-#[derive(Clone, Copy)]
-pub(super) struct Eight {
-    pub(super) v: [Wide; 2],
-    pub(super) w: Wide,
-    pub(super) phi: Wide,
-}
-
-impl Eight {
-    /// Those at these places.
-    #[inline(always)]
-    pub(super) fn gather(avx2: Avx2, movers: &[Mover], [a, b, c, d, e, f, g, h]: &[u32; LANES]) -> Eight {
-        let even =
-            turned([first(avx2, movers, a), first(avx2, movers, c), first(avx2, movers, e), first(avx2, movers, g)]);
-        let odd =
-            turned([first(avx2, movers, b), first(avx2, movers, d), first(avx2, movers, f), first(avx2, movers, h)]);
+    fn gather(self, movers: &[Mover], [a, b, c, d, e, f, g, h]: &[u32; LANES]) -> Eight<Avx2> {
+        let even = [self.first(movers, a), self.first(movers, c), self.first(movers, e), self.first(movers, g)];
+        let odd = [self.first(movers, b), self.first(movers, d), self.first(movers, f), self.first(movers, h)];
+        let [even, odd] = [turned(even), turned(odd)];
         Eight {
             v: [Wide(even[0], odd[0]), Wide(even[1], odd[1])],
             w: Wide(even[2], odd[2]),
@@ -307,10 +125,9 @@ impl Eight {
         }
     }
 
-    /// Puts them back. Of places that are equal one wins.
     #[inline(always)]
-    pub(super) fn scatter(self, movers: &mut [Mover], [a, b, c, d, e, f, g, h]: &[u32; LANES]) {
-        let Eight { v: [x, y], w, phi } = self;
+    fn scatter(self, eight: Eight<Avx2>, movers: &mut [Mover], [a, b, c, d, e, f, g, h]: &[u32; LANES]) {
+        let Eight { v: [x, y], w, phi } = eight;
         let even = turned([x.0, y.0, w.0, phi.0]);
         let odd = turned([x.1, y.1, w.1, phi.1]);
         set_first(movers, a, even[0]);
@@ -323,36 +140,209 @@ impl Eight {
         set_first(movers, h, odd[3]);
     }
 
-    /// How far those at these places have gone, x and y.
     #[inline(always)]
-    pub(super) fn ways(_: Avx2, movers: &[Mover], [a, b, c, d, e, f, g, h]: &[u32; LANES]) -> [Factor; 2] {
+    fn ways(self, movers: &[Mover], [a, b, c, d, e, f, g, h]: &[u32; LANES]) -> [Factor; 2] {
         let even = vector!(_mm256_setr_epi64x(way(movers, a), way(movers, c), way(movers, e), way(movers, g)));
         let odd = vector!(_mm256_setr_epi64x(way(movers, b), way(movers, d), way(movers, f), way(movers, h)));
         let both = Wide(even, odd);
-        [both.low(), both.shifted::<32>().low()]
+        [Factor(even, odd), both.down::<32>().low()]
     }
 
-    /// Velocities limited to ±2⁵⁷: [`held`](crate::num::lane::held).
     #[inline(always)]
-    pub(super) fn held(mut self, avx2: Avx2) -> Eight {
-        let limit = avx2.wide(1 << 57);
-        let raised = [self.v[0].add(limit), self.v[1].add(limit), self.w.add(limit)];
-        let over = raised[0].or(raised[1]).or(raised[2]).shifted::<58>();
-        // Nearly never.
-        if over.low().narrow().any() {
-            let least = avx2.wide(-(1 << 57));
-            self.v = [self.v[0].min(limit).max(least), self.v[1].min(limit).max(least)];
-            self.w = self.w.min(limit).max(least);
+    fn held(self, eight: Eight<Avx2>) -> Eight<Avx2> {
+        let [least, most] = [self.wide(-(1 << 57)), self.wide(1 << 57)];
+        let Eight { v: [x, y], w, phi } = eight;
+        let over = x.add(most).or(y.add(most)).or(w.add(most)).down::<58>();
+        if !over.low().narrow().any() {
+            return eight;
         }
-        self
+        // Nearly never.
+        let within = |speed: Wide| speed.min(most).max(least);
+        Eight { v: [within(x), within(y)], w: within(w), phi }
     }
 }
 
-/// The first four numbers of a mover: v, w and φ.
-#[inline(always)]
-fn first(_: Avx2, movers: &[Mover], place: &u32) -> __m256i {
-    let mover = &movers[*place as usize];
-    vector!(_mm256_loadu_si256(core::ptr::from_ref(mover).cast()))
+impl words::Narrow<Avx2> for Narrow {
+    #[inline(always)]
+    fn store(self, lane: &mut Lane) {
+        vector!(_mm256_storeu_si256(lane.as_mut_ptr().cast(), self.0));
+    }
+
+    #[inline(always)]
+    fn factor(self) -> Factor {
+        Factor(self.0, vector!(_mm256_srli_epi64::<32>(self.0)))
+    }
+
+    #[inline(always)]
+    fn add(self, other: Narrow) -> Narrow {
+        Narrow(vector!(_mm256_add_epi32(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Narrow) -> Narrow {
+        Narrow(vector!(_mm256_sub_epi32(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Narrow) -> Narrow {
+        Narrow(vector!(_mm256_min_epi32(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Narrow) -> Narrow {
+        Narrow(vector!(_mm256_max_epi32(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Narrow {
+        Narrow(vector!(_mm256_abs_epi32(self.0)))
+    }
+
+    #[inline(always)]
+    fn shifted<const SHIFT: i32>(self) -> Narrow {
+        Narrow(vector!(_mm256_srai_epi32::<SHIFT>(self.0)))
+    }
+
+    #[inline(always)]
+    fn or(self, other: Narrow) -> Narrow {
+        Narrow(vector!(_mm256_or_si256(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn above(self, other: Narrow) -> Mask {
+        Mask(vector!(_mm256_cmpgt_epi32(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn any(self) -> bool {
+        vector!(_mm256_testz_si256(self.0, self.0)) == 0
+    }
+}
+
+impl words::Mask<Avx2> for Mask {
+    #[inline(always)]
+    fn and(self, other: Mask) -> Mask {
+        Mask(vector!(_mm256_and_si256(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn or(self, other: Mask) -> Mask {
+        Mask(vector!(_mm256_or_si256(self.0, other.0)))
+    }
+
+    #[inline(always)]
+    fn pick(self, yes: Narrow, no: Narrow) -> Narrow {
+        Narrow(vector!(_mm256_blendv_epi8(no.0, yes.0, self.0)))
+    }
+
+    #[inline(always)]
+    fn bits(self) -> u8 {
+        vector!(_mm256_movemask_ps(_mm256_castsi256_ps(self.0))) as u8
+    }
+}
+
+impl words::Factor<Avx2> for Factor {
+    #[inline(always)]
+    fn mul(self, other: Factor) -> Wide {
+        Wide(vector!(_mm256_mul_epi32(self.0, other.0)), vector!(_mm256_mul_epi32(self.1, other.1)))
+    }
+
+    #[inline(always)]
+    fn narrow(self) -> Narrow {
+        Narrow(vector!(_mm256_blend_epi32::<0b1010_1010>(self.0, _mm256_slli_epi64::<32>(self.1))))
+    }
+}
+
+impl words::Wide<Avx2> for Wide {
+    #[inline(always)]
+    fn add(self, other: Wide) -> Wide {
+        Wide(vector!(_mm256_add_epi64(self.0, other.0)), vector!(_mm256_add_epi64(self.1, other.1)))
+    }
+
+    #[inline(always)]
+    fn sub(self, other: Wide) -> Wide {
+        Wide(vector!(_mm256_sub_epi64(self.0, other.0)), vector!(_mm256_sub_epi64(self.1, other.1)))
+    }
+
+    #[inline(always)]
+    fn min(self, other: Wide) -> Wide {
+        self.greater(other).pick(other, self)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Wide) -> Wide {
+        self.greater(other).pick(self, other)
+    }
+
+    #[inline(always)]
+    fn above(self, other: Wide) -> Mask {
+        let Wide(even, odd) = self.greater(other);
+        Mask(vector!(_mm256_blend_epi32::<0b1010_1010>(even, odd)))
+    }
+
+    #[inline(always)]
+    fn low(self) -> Factor {
+        Factor(self.0, self.1)
+    }
+
+    /// There is no such shift that brings in signs: numbers are moved up to be positive, and back.
+    #[inline(always)]
+    fn shifted<const SHIFT: i32>(self, avx2: Avx2) -> Wide {
+        self.sub(avx2.wide(i64::MIN)).down::<SHIFT>().sub(avx2.wide(i64::MIN).down::<SHIFT>())
+    }
+
+    #[inline(always)]
+    fn half<const SHIFT: i32>(self, avx2: Avx2) -> Wide {
+        self.add(avx2.wide(0).greater(self)).add(avx2.wide((1 << SHIFT) >> 1))
+    }
+
+    #[inline(always)]
+    fn round<const SHIFT: i32>(self, avx2: Avx2) -> Factor {
+        self.half::<SHIFT>(avx2).down::<SHIFT>().low()
+    }
+
+    #[inline(always)]
+    fn limited(self, avx2: Avx2) -> Narrow {
+        // By the upper halves: the quotient is in ±2³⁰ if those are in ±2²⁶.
+        let high = Narrow(vector!(_mm256_blend_epi32::<0b1010_1010>(_mm256_srli_epi64::<32>(self.0), self.1)));
+        let inner = self.down::<28>().low().narrow();
+        let inner = high.above(avx2.narrow((1 << 26) - 1)).pick(avx2.narrow(1 << 30), inner);
+        avx2.narrow(-(1 << 26)).above(high).pick(avx2.narrow(-(1 << 30)), inner)
+    }
+}
+
+impl Wide {
+    #[inline(always)]
+    fn or(self, other: Wide) -> Wide {
+        Wide(vector!(_mm256_or_si256(self.0, other.0)), vector!(_mm256_or_si256(self.1, other.1)))
+    }
+
+    /// All bits of the lanes that are greater.
+    #[inline(always)]
+    fn greater(self, other: Wide) -> Wide {
+        Wide(vector!(_mm256_cmpgt_epi64(self.0, other.0)), vector!(_mm256_cmpgt_epi64(self.1, other.1)))
+    }
+
+    /// Of a mask of whole lanes: where it is set `yes`, else `no`.
+    #[inline(always)]
+    fn pick(self, yes: Wide, no: Wide) -> Wide {
+        Wide(vector!(_mm256_blendv_epi8(no.0, yes.0, self.0)), vector!(_mm256_blendv_epi8(no.1, yes.1, self.1)))
+    }
+
+    /// Shifted right, zeros coming in.
+    #[inline(always)]
+    fn down<const SHIFT: i32>(self) -> Wide {
+        Wide(vector!(_mm256_srli_epi64::<SHIFT>(self.0)), vector!(_mm256_srli_epi64::<SHIFT>(self.1)))
+    }
+}
+
+impl Avx2 {
+    /// The first four numbers of a mover: v, w and φ.
+    #[inline(always)]
+    fn first(self, movers: &[Mover], place: &u32) -> __m256i {
+        let mover = &movers[*place as usize];
+        vector!(_mm256_loadu_si256(core::ptr::from_ref(mover).cast()))
+    }
 }
 
 #[inline(always)]

@@ -2,6 +2,8 @@
 
 #[cfg(target_arch = "x86_64")]
 use super::avx2::Avx2;
+#[cfg(all(target_arch = "x86_64", avx512))]
+use super::avx512::Avx512;
 use super::mover::Mover;
 use super::rows::Block;
 use super::scales::Scales;
@@ -12,32 +14,42 @@ pub(crate) enum Kernel {
     Definition,
     #[cfg(target_arch = "x86_64")]
     Avx2(Avx2),
+    #[cfg(all(target_arch = "x86_64", avx512))]
+    Avx512(Avx512),
 }
 
 impl Default for Kernel {
     /// The fastest that this processor has.
     fn default() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if let Some(avx2) = Avx2::detect() {
-            return Kernel::Avx2(avx2);
-        }
-        Kernel::Definition
+        Kernel::all().last().unwrap_or(Kernel::Definition)
     }
 }
 
 impl Kernel {
+    /// All that this processor has, slowest first.
+    pub(super) fn all() -> impl Iterator<Item = Kernel> {
+        let all = [
+            Some(Kernel::Definition),
+            #[cfg(target_arch = "x86_64")]
+            Avx2::detect().map(Kernel::Avx2),
+            #[cfg(all(target_arch = "x86_64", avx512))]
+            Avx512::detect().map(Kernel::Avx512),
+        ];
+        all.into_iter().flatten()
+    }
+
     /// [`Block::solve`].
     #[inline]
     pub(super) fn solve<const BIASED: bool>(self, block: &mut Block, lanes: u8, movers: &mut [Mover], scales: &Scales) {
-        match self {
-            Kernel::Definition => block.solve::<BIASED>(lanes, movers, scales),
+        let (blows, pushes) = match self {
+            Kernel::Definition => return block.solve::<BIASED>(lanes, movers, scales),
             #[cfg(target_arch = "x86_64")]
-            Kernel::Avx2(avx2) => {
-                let (blows, pushes) = avx2.sweep::<BIASED>(block, lanes, movers, scales);
-                block.pushes = pushes;
-                block.go_rounds::<BIASED>(blows, movers, scales);
-            }
-        }
+            Kernel::Avx2(avx2) => avx2.sweep::<BIASED>(block, lanes, movers, scales),
+            #[cfg(all(target_arch = "x86_64", avx512))]
+            Kernel::Avx512(avx512) => avx512.sweep::<BIASED>(block, lanes, movers, scales),
+        };
+        block.pushes = pushes;
+        block.go_rounds::<BIASED>(blows, movers, scales);
     }
 
     /// [`Block::warm_start`].
@@ -47,6 +59,8 @@ impl Kernel {
             Kernel::Definition => block.warm_start(movers),
             #[cfg(target_arch = "x86_64")]
             Kernel::Avx2(avx2) => avx2.warm_start(block, movers),
+            #[cfg(all(target_arch = "x86_64", avx512))]
+            Kernel::Avx512(avx512) => avx512.warm_start(block, movers),
         }
     }
 }

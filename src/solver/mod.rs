@@ -6,6 +6,8 @@
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(all(target_arch = "x86_64", avx512))]
+mod avx512;
 mod color;
 mod direct;
 mod equations;
@@ -20,6 +22,7 @@ mod prepare;
 mod rows;
 mod scales;
 mod show;
+mod squeeze;
 mod strike;
 #[cfg(target_arch = "x86_64")]
 mod sweep;
@@ -27,6 +30,8 @@ mod sweep;
 mod tests;
 mod timeline;
 mod turning;
+#[cfg(target_arch = "x86_64")]
+mod words;
 
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Contact, Contacts, NEW, Pair, Touch};
@@ -66,12 +71,13 @@ pub(crate) struct Solver {
     movers: Movers,
     before: Vec<[i64; 6]>,
     free: Vec<bool>,
-    /// By contact: the places of its bodies among the movers, whether it is heavy, how it was solved, and what it says of how its
-    /// island is to be.
+    /// By contact: the places of its bodies among the movers, whether it is heavy and squeezes, how it was solved, and what it says
+    /// of how its island is to be.
     places: Vec<[u32; 2]>,
     heavy: Vec<bool>,
     modes: Vec<u8>,
     votes: Vec<Vote>,
+    squeezed: Vec<bool>,
     islands: Islands,
     direct: Direct,
     /// Pairs that may strike.
@@ -110,6 +116,7 @@ impl Solver {
             heavy,
             modes,
             votes,
+            squeezed,
             islands,
             direct,
             fast,
@@ -125,6 +132,7 @@ impl Solver {
         heavy.clear();
         modes.clear();
         votes.clear();
+        squeezed.clear();
         fast.clear();
         turning.clear();
         for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !pair.sensor) {
@@ -157,6 +165,7 @@ impl Solver {
             places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
             let old = if pair.old == NEW { Contact::default() } else { contacts.get(pair.old as usize) };
             heavy.push(Scales::is_heavy(old.normal));
+            squeezed.push(scales.is_squeezed(old.normal, overlap(pair)));
             modes.push(old.mode);
             votes.push(vote(pair, &old, bodies, mobilities, scales));
         }
@@ -170,6 +179,7 @@ impl Solver {
         }
         movers.remember(bodies, before);
         movers.yielding(mobilities, free);
+        movers.find_squeezed(squeezed, places, free, drive, mobilities, scales);
         islands.find(places, free, votes);
         colors.assign(places, free, heavy, &islands.apart);
         blocks.resize_with(colors.blocks, Block::default);
@@ -248,6 +258,7 @@ impl Solver {
                     kernel.solve::<true>(block, u8::MAX, &mut movers.lanes, scales);
                 }
                 direct.solve::<true>(blocks, &mut movers.lanes, scales);
+                movers.hold_back(mobilities);
                 movers.drift(scales);
                 let seats = &colors.seats;
                 let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats, blocks };
@@ -288,6 +299,7 @@ impl Solver {
                 direct.solve::<false>(blocks, &mut movers.lanes, scales);
                 watch(substep, Substep { touch, bodies, movers, blocks, colors, timeline });
             }
+            movers.hold_back(mobilities);
             for (row, &places) in places.iter().enumerate() {
                 let seat = colors.seats[row] as usize;
                 if blocks[seat / LANES].spent(seat % LANES) {

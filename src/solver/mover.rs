@@ -1,14 +1,15 @@
 //! Bodies as the rows see them, for one tick: velocities in full, positions as what changed since the tick began.
 
 mod show;
+mod store;
 
 use super::flight::{Past, State, rim};
 use super::mobility::Mobility;
 use super::scales::{SPEED_MAX, Scales};
+use super::squeeze::Squeeze;
 use crate::body::Bodies;
-use crate::geom::Vec2;
-use crate::motion::{Bound, Drive, Fault, turn_by};
-use crate::num::{Angle, AngularVelocity, Length, Quantity, Velocity, add_sat, clamp_i64, div, lane, mul, round_shift};
+use crate::motion::{Drive, turn_by};
+use crate::num::{Velocity, clamp_i64, div, lane, mul, round_shift};
 use core::mem::replace;
 
 /// What rows read and write.
@@ -70,6 +71,7 @@ pub(crate) struct Movers {
     pub(crate) brisk: bool,
     /// Whether one of them may turn so fast that its rows must be made anew.
     pub(crate) turns: bool,
+    pub(super) squeeze: Squeeze,
 }
 
 impl Movers {
@@ -288,6 +290,7 @@ impl Movers {
         if place == 0 {
             return;
         }
+        self.squeeze.allow(place, change);
         let (mover, course) = (&mut self.lanes[place as usize], &mut self.courses[place as usize]);
         let now = [mover.v[0], mover.v[1], mover.w];
         let then = lane::held([0, 1, 2].map(|axis: usize| now[axis].saturating_add(change[axis])));
@@ -300,6 +303,16 @@ impl Movers {
             course.sum[axis] = lane::add(course.sum[axis], round_shift(way, 60) as i64);
         }
         mover.go(&course.sum, scales);
+    }
+
+    /// Gives a body other velocities; what its rows do in a substep stays as it is.
+    pub(super) fn slow(&mut self, place: u32, kept: [i64; 3]) {
+        let (mover, course) = (&mut self.lanes[place as usize], &mut self.courses[place as usize]);
+        let now = [mover.v[0], mover.v[1], mover.w];
+        [mover.v[0], mover.v[1], mover.w] = kept;
+        for axis in 0..3 {
+            course.begin[axis] = lane::bounded(lane::add(course.begin[axis], lane::sub(kept[axis], now[axis])));
+        }
     }
 
     /// By place, whether impulses leave it as it is.
@@ -333,55 +346,6 @@ impl Movers {
     pub(crate) fn hit(&mut self, places: [u32; 2]) {
         for place in places {
             self.courses[place as usize].hit = true;
-        }
-    }
-
-    /// What contacts made of the bodies that they pushed, instead of what free motion did. Bodies that nothing pushed
-    /// keep that, which is exact, unless they are faster than the rows can follow.
-    pub(crate) fn store(
-        &self,
-        bodies: &mut Bodies,
-        before: &[[i64; 6]],
-        mobilities: &[Mobility],
-        scales: &Scales,
-        faults: &mut Vec<Fault>,
-    ) {
-        for ((mover, course), before) in self.lanes.iter().zip(&self.courses).zip(before).skip(1) {
-            let slot = course.slot as usize;
-            let mobility = &mobilities[slot];
-            if !(course.hit || course.slowed) || !mobility.moves() || bodies.rest.is_asleep(slot) {
-                continue;
-            }
-            if course.slowed {
-                faults.push(Fault { slot, bound: Bound::ContactSpeed });
-            }
-            let k = scales.shift;
-            let [x, y, angle, vx, vy, omega] = *before;
-            let mut place = |from: i64, sum: i64| {
-                let moved = from.saturating_add(mul(sum, scales.line, 51u32.saturating_sub(k)));
-                let kept = moved.clamp(Length::MIN.to_bits(), Length::MAX.to_bits());
-                if kept != moved {
-                    faults.push(Fault { slot, bound: Bound::Position });
-                }
-                Length::from_bits(kept)
-            };
-            let position = Vec2::new(place(x, course.sum[0]), place(y, course.sum[1]));
-            bodies.set_position(slot, position);
-            // φ/2π in 2^k m with 50 fraction bits, then over σ as turns with 48.
-            let rolled = mul(course.sum[2], scales.turn, 33);
-            let (turned, over) = turn_by(angle, mobility.over_sigma(rolled, 50u32.saturating_sub(k), 48));
-            bodies.angle.set(slot, Angle::from_bits(turned));
-            if over {
-                faults.push(Fault { slot, bound: Bound::Turns });
-            }
-            let line = |from: i64, start: i64, end: i64| {
-                let change = i128::from(end).saturating_sub(start.into()) << k;
-                clamp_i64(i128::from(from).saturating_add(change))
-            };
-            let v = [line(vx, course.start[0], mover.v[0]), line(vy, course.start[1], mover.v[1])];
-            bodies.set_velocity(slot, Vec2::new(Velocity::from_bits(v[0]), Velocity::from_bits(v[1])));
-            let spun = mobility.over_sigma(mover.w.saturating_sub(course.start[2]), 48u32.saturating_sub(k), 48);
-            bodies.omega.set(slot, AngularVelocity::from_bits(add_sat(omega, spun)));
         }
     }
 

@@ -4,7 +4,6 @@ use super::mobility::Mobility;
 use super::rows::{Block, Row};
 use super::scales::Scales;
 use crate::contact::{Contact, Pair};
-use crate::narrow::Point;
 use crate::num::{lane, mul};
 
 /// Two bodies with contact points, and what is the same for all their rows.
@@ -42,34 +41,48 @@ impl<'p> Joint<'p> {
         Joint { pair, places, between, mobility, share, inertia, normal }
     }
 
-    /// α of both bodies along the normal and along the tangent (−n_y, n_x) at a point: r × n, and r × t = r·n. Across a
-    /// gap each body has the point on its own surface, where it will be when the gap has closed.
+    /// α of both bodies along the normal and along the tangent (−n_y, n_x) at a point: r × n, and r × t = r·n. Of a point that
+    /// is not there, zero.
     #[inline(always)]
-    fn arms(&self, at: usize, point: &Point) -> [[i32; 2]; 2] {
-        const LIMIT: i64 = (8 << 28) - 1;
-        let half = point.separation.max(0) >> 1;
-        let out = self.pair.manifold.normal.map(|n| mul(half, n.into(), 30));
-        let [nx, ny] = self.normal;
-        let mut arms = [[0; 2]; 2];
-        for (body, place) in self.places.into_iter().enumerate() {
-            if place == 0 {
-                continue;
-            }
-            let r = [0, 1].map(|axis: usize| match body {
-                0 => point.arm[axis].saturating_add(out[axis]),
-                _ => point.arm[axis].saturating_sub(self.between[at][axis]).saturating_sub(out[axis]),
-            });
-            let [x, y] = self.mobility[body].relative(r);
-            let along = lane::round::<28>(lane::sub(lane::mul(x, ny), lane::mul(y, nx)));
-            let across = lane::round::<28>(lane::add(lane::mul(x, nx), lane::mul(y, ny)));
-            arms[0][body] = lane::clamp(along, -LIMIT, LIMIT) as i32;
-            arms[1][body] = lane::clamp(across, -LIMIT, LIMIT) as i32;
+    fn arms(&self, at: usize) -> [[i32; 2]; 2] {
+        if at >= usize::from(self.pair.manifold.count) {
+            return [[0; 2]; 2];
         }
-        arms
+        let ([along_a, across_a], [along_b, across_b]) = (self.arm(at, 0), self.arm(at, 1));
+        [[along_a, along_b], [across_a, across_b]]
     }
 
+    /// α of a body along both. Across a gap each body has the point on its own surface, where it will be when the gap has
+    /// closed.
     #[inline(always)]
-    fn lever(&self, arm: [i32; 2]) -> Lever {
+    fn arm(&self, at: usize, body: usize) -> [i32; 2] {
+        const LIMIT: i64 = (8 << 28) - 1;
+        if self.places[body] == 0 {
+            return [0; 2];
+        }
+        let point = &self.pair.manifold.points[at];
+        let half = point.separation.max(0) >> 1;
+        let [out_x, out_y] = self.pair.manifold.normal.map(|n| mul(half, n.into(), 30));
+        let [x, y] = point.arm;
+        let r = if body == 0 {
+            [x.saturating_add(out_x), y.saturating_add(out_y)]
+        } else {
+            let [far_x, far_y] = self.between[at];
+            [x.saturating_sub(far_x).saturating_sub(out_x), y.saturating_sub(far_y).saturating_sub(out_y)]
+        };
+        let [x, y] = self.mobility[body].relative(r);
+        let [nx, ny] = self.normal;
+        let along = lane::round::<28>(lane::sub(lane::mul(x, ny), lane::mul(y, nx)));
+        let across = lane::round::<28>(lane::add(lane::mul(x, nx), lane::mul(y, ny)));
+        [lane::clamp(along, -LIMIT, LIMIT) as i32, lane::clamp(across, -LIMIT, LIMIT) as i32]
+    }
+
+    /// The lever of a row of a point, from its arms; of one that is not there, zero.
+    #[inline(always)]
+    fn lever(&self, at: usize, arm: [i32; 2]) -> Lever {
+        if at >= usize::from(self.pair.manifold.count) {
+            return Lever::default();
+        }
         let turn = [lane::scale(arm[0], self.inertia[0]), lane::scale(arm[1], self.inertia[1])];
         let kappa = lane::add(lane::scale(arm[0], turn[0]), lane::scale(arm[1], turn[1]));
         Lever { arm, turn, kappa: lane::add(1 << 28, kappa) }
@@ -85,37 +98,61 @@ impl<'p> Joint<'p> {
             let part = |body: usize| lane::round::<28>(lane::mul(self.share[body], self.normal[axis])) as i32;
             (block.reply[0][axis][i], block.reply[1][axis][i]) = (part(0), part(1).saturating_neg());
         }
-        let manifold = &self.pair.manifold;
-        let points = &manifold.points[..manifold.count as usize];
-        let arms = [0, 1].map(|at| points.get(at).map(|point| self.arms(at, point)));
-        let lower = usize::from(points.len() > 1 && points[1].separation < points[0].separation);
-        let tangent = arms[lower].map_or(Lever::default(), |[_, arm]| self.lever(arm));
-        let mut carried = 0;
-        for (at, arms) in arms.iter().enumerate() {
-            let normal = arms.map_or(Lever::default(), |[arm, _]| self.lever(arm));
-            let known = points.get(at).and_then(|point| (0..old.count as usize).find(|&k| old.ids[k] == point.id));
-            carried = if known.is_some() { old.tangent } else { carried };
-            let line = block.points[at].put(i, &normal, known.map_or(0, |k| old.normal[k]));
-            let ratio = lane::scale(line, tangent.kappa);
+        let [first, second] = [self.arms(0), self.arms(1)];
+        let [one, other] = &self.pair.manifold.points;
+        let lower_is_second = self.pair.manifold.count > 1 && other.separation < one.separation;
+        let tangent = self.lever(0, if lower_is_second { second[1] } else { first[1] });
+        let known = [self.known(0, old), self.known(1, old)];
+        self.write_point(block, i, 0, &self.lever(0, first[0]), known[0].map(|k| old.normal[k]));
+        self.write_point(block, i, 1, &self.lever(1, second[0]), known[1].map(|k| old.normal[k]));
+        for at in 0..2 {
+            let ratio = lane::scale(block.points[at].line[i], tangent.kappa);
             block.limit[at][i] = mul(ratio, friction, 48).min(i32::MAX.into()) as i32;
-            let shift = scales.shift.saturating_add(6) as i32;
-            block.separation[at][i] =
-                points.get(at).map_or(i32::MAX, |point| lane::limit(lane::shifted(point.separation, shift)));
-            // Warm starting has pushed already, and friction may outlast it by a substep.
-            block.peak[at][i] = block.points[at].impulse[i];
+            block.separation[at][i] = self.separation(at, scales);
         }
-        block.friction.put(i, &tangent, carried);
-        let [first, second] = arms.map(|arms| arms.map_or([0; 2], |[arm, _]| arm));
-        block.couple[0][i] = block.friction.turns(i, first);
-        block.couple[1][i] = block.friction.turns(i, second);
-        block.couple[2][i] = block.points[0].turns(i, second);
+        block.friction.put(i, &tangent, if known == [None; 2] { 0 } else { old.tangent });
+        block.couple[0][i] = block.friction.turns(i, first[0]);
+        block.couple[1][i] = block.friction.turns(i, second[0]);
+        block.couple[2][i] = block.points[0].turns(i, second[0]);
+    }
+
+    /// Which of the points of the last tick's contact a point is.
+    #[inline(always)]
+    fn known(&self, at: usize, old: &Contact) -> Option<usize> {
+        let there = at < usize::from(self.pair.manifold.count);
+        let id = self.pair.manifold.points[at].id;
+        if there && old.count > 0 && old.ids[0] == id {
+            Some(0)
+        } else if there && old.count > 1 && old.ids[1] == id {
+            Some(1)
+        } else {
+            None
+        }
+    }
+
+    /// A point's row, and what its load is known to have been.
+    #[inline(always)]
+    fn write_point(&self, block: &mut Block, i: usize, at: usize, lever: &Lever, load: Option<i64>) {
+        block.points[at].put(i, lever, load.unwrap_or(0));
+        // Warm starting has pushed already, and friction may outlast it by a substep.
+        block.peak[at][i] = block.points[at].impulse[i];
+    }
+
+    /// Q26; of a point that is not there, what never closes.
+    #[inline(always)]
+    fn separation(&self, at: usize, scales: &Scales) -> i32 {
+        if at >= usize::from(self.pair.manifold.count) {
+            return i32::MAX;
+        }
+        let shift = scales.shift.saturating_add(6) as i32;
+        lane::limit(lane::shifted(self.pair.manifold.points[at].separation, shift))
     }
 }
 
 impl Row {
-    /// Takes a lever, and the impulse λ̂ = κ·(λ·S) that the last tick left. 1/κ.
+    /// Takes a lever, and the impulse λ̂ = κ·(λ·S) that the last tick left.
     #[inline(always)]
-    fn put(&mut self, i: usize, lever: &Lever, start: i64) -> i32 {
+    fn put(&mut self, i: usize, lever: &Lever, start: i64) {
         // κ is at least 2²⁸, or 0.
         let line = (1i64 << 56).saturating_add(lever.kappa >> 1).checked_div(lever.kappa).unwrap_or(0) as i32;
         self.line[i] = line;
@@ -127,7 +164,6 @@ impl Row {
         if start != 0 {
             self.impulse[i] = mul(start, lever.kappa, 56).clamp(-(1 << 29), 1 << 29) as i32;
         }
-        line
     }
 
     /// What an impulse of this row adds by turning to the speed of a row with other arms, Q27. Limited to 11, which bodies

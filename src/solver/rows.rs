@@ -303,6 +303,12 @@ impl Block {
 }
 
 impl Scales {
+    /// How fast an overlap opens at most, times the mass scale: Q50.
+    #[inline(always)]
+    pub(super) fn least_opens(&self) -> i64 {
+        mul(self.soft[0], self.push as i32)
+    }
+
     /// The impulse with which a point answers its speed (Q48), and whether that pushes an overlap apart.
     #[inline(always)]
     fn answer<const BIASED: bool>(&self, speed: i64, load: i32, separation: i32) -> (i32, bool) {
@@ -317,13 +323,13 @@ impl Scales {
         // A gap may close in the substep, an overlap beyond the slop is to open.
         let (way, rate) =
             if gap { (separation, self.close_rate) } else { (lane::deeper(separation, SLOP), self.push_rate) };
-        let bias = (mul(way, rate) >> 20).max(self.push);
+        let bias = lane::limit(mul(way, rate) >> 20).min((1 << 30) - 1);
         let [mass, give] = if gap { [1 << 30, 0] } else { self.soft };
-        // The greater the load, the less it yields.
-        let give = mul(give, lane::eased(load, self.firm));
-        let answer = add(mul(mass, lane::limit(add(speed, bias))), give);
+        // The greater the load, the less it yields. What is left of the bias opens the overlap, and not too fast.
+        let opens = add(mul(mass, bias), mul(give, lane::eased(load, self.firm)));
+        let answer = add(mul(mass, lane::limit(speed)), opens.max(self.least_opens()));
         // The speed with which the row would open if nothing opposed it; or there is hardly a load at all.
-        let pushes = bias < 0 && (add(mul(mass, bias as i32), give) < PUSHES || impulse < LOAD);
+        let pushes = bias < 0 && (opens < PUSHES || impulse < LOAD);
         (lane::clamp(sub(impulse, lane::round::<30>(answer)), 0, IMPULSE_MAX) as i32, pushes)
     }
 }

@@ -36,7 +36,13 @@ const HEAVY: i64 = 1 << 48;
 /// The load from which on a contact makes its island hard, as [`HEAVY`]: 3/4 m/s, half of it once it is. A stack of 24 boxes
 /// has it at its foot, the pyramid of 40 rows does not; one of 20 would take five times as long.
 const HARD: i64 = 3 << 46;
-/// The speed with which overlaps are pushed apart at most: 1 m/s, 20 fraction bits.
+/// The load from which on what overlaps by more than [`SLACK`] twice is held back, as [`HEAVY`]: 6 m/s. Such a row has stored some
+/// 10 J/kg. With 8 m/s, discs between two walls slip out at 8 m/s instead of 6; with 4 m/s at 5, but heaps that are turned over
+/// overlap by a third more, and with 2 m/s twice as much.
+const SQUEEZED: i64 = 6 << 48;
+/// The speed with which overlaps are pushed apart at most: 1 m/s, 20 fraction bits. It bounds what is left of an overlap's bias
+/// after the load has taken its part, so a row bears the more the deeper it is. Were it the bias that is bounded, a row would
+/// bear nothing more beyond 3 cm, and discs in a room that is too small would never find where to rest.
 const PUSH: i64 = 1 << 20;
 /// The distance at which contacts are looked for: 2 cm, 32 fraction bits.
 const MARGIN: i64 = 85_899_346;
@@ -65,7 +71,7 @@ pub(crate) struct Scales {
     /// With which part of itself in a second an overlap of rigid rows opens, Q14: an eighth in a tick. With a fifth in a
     /// substep a tower that becomes rigid would kick itself over, for to right a tilt at once takes more than its load.
     pub(crate) rigid_rate: i32,
-    /// The bias of overlaps at most, Q20.
+    /// How fast an overlap opens at most, Q20.
     pub(crate) push: i64,
     pub(crate) soft: [i32; 2],
     /// 3/4 of the load that a row bears at the overlap from which on it is stiffer, Q20; below 2²⁸.
@@ -75,6 +81,8 @@ pub(crate) struct Scales {
     pub(crate) tick_turn: i64,
     /// What of an overlap is no more than bodies at rest have, Q32 m.
     pub(crate) slack: i64,
+    /// How fast overlaps are pushed apart at most, Q48 m/s over 2^k.
+    pub(crate) recovery: i64,
     /// The overlap from which on an island is hard, Q32 m: sweeps would let what is pushed apart fly.
     pub(crate) deep: i64,
     /// How near is touching, Q32 m.
@@ -106,6 +114,7 @@ impl Scales {
             margins: Margins { base: MARGIN << shift, tick: div(1 << 63, tick_rate.into()) as i64 },
             tick_turn: div(TURN_PER_RADIAN_Q64, i128::from(tick_rate).saturating_mul(2)) as i64,
             slack: SLACK << shift,
+            recovery: PUSH << 28,
             deep: (SLACK << shift).saturating_mul(10),
             touching: i64::from(SLOP) << shift.saturating_add(6),
             aside: (MARGIN / 2).saturating_mul(tick_rate.into()) << 16,
@@ -121,6 +130,11 @@ impl Scales {
     /// `was`: whether its island was; half of it is enough then, or islands would go to and fro.
     pub(crate) fn is_hard(normal: [i64; 2], was: bool) -> bool {
         normal[0].saturating_add(normal[1]) >= if was { HARD >> 1 } else { HARD }
+    }
+
+    /// Whether bodies that overlap by `overlap`, Q32 m, with these impulses (Q48) of their points are squeezed.
+    pub(crate) fn is_squeezed(&self, normal: [i64; 2], overlap: i64) -> bool {
+        normal[0].saturating_add(normal[1]) >= SQUEEZED && overlap > self.slack.saturating_mul(2)
     }
 
     /// When the n-th substep begins and ends, from 1 on; Q32 of the tick.

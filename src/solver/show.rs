@@ -33,6 +33,7 @@ show!(Scales {
     margins,
     tick_turn,
     slack,
+    recovery,
     deep,
     touching,
     aside,

@@ -38,7 +38,7 @@ impl Timeline {
         for own in colliders.list(bodies.cold.value(slot as usize).first) {
             for &other in &found {
                 let (a, b) = (other.min(own as u32), other.max(own as u32));
-                // Exactly, so that what the broad phase hands out besides has no say.
+                // Exactly, so that what the broad phase hands out besides of what moves has no say.
                 if a == b || !self.way(other, stage).overlaps(&around) || known.contains(&[a, b]) {
                     continue;
                 }
