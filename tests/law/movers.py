@@ -179,7 +179,7 @@ class Movers:
         if place == 0:
             return
         mover, scales = self.list[place], self.scales
-        squeeze.allow(mover, change)
+        squeeze.allow(mover, change, self.world.seen)
         then = held([mover.v[axis] + change[axis] for axis in range(3)])
         for axis in range(3):
             by = then[axis] - mover.v[axis]
@@ -191,8 +191,10 @@ class Movers:
 
     def way(self, mover):
         """What it went; nothing if that is only what rows leave over of rest."""
-        least = TREMOR * self.scales.substeps
-        return [0, 0, 0] if all(abs(way) <= least for way in mover.sum) else mover.sum
+        if any(abs(way) > TREMOR * self.scales.substeps for way in mover.sum):
+            return mover.sum
+        self.world.seen["stayed in spite of a tremor"] += any(mover.sum)
+        return [0, 0, 0]
 
     def store(self, faults):
         """Bodies that contacts pushed, to where contacts bring them."""

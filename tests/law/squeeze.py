@@ -39,9 +39,10 @@ def scaled(value, a, b):
     return sat64(div(value * a, max(b, 1)))
 
 
-def allow(mover, change):
+def allow(mover, change, seen):
     """An impact changed its velocities."""
     if mover.most:
+        seen["struck while squeezed"] += 1
         mover.most = sat64(mover.most + max(length(change), sat64(8 * abs(change[2]))))
 
 
@@ -55,5 +56,6 @@ def hold(movers):
             x, y = (scaled(c, mover.most, fast) for c in (x, y))
         spin = scaled(mover.most, mover.mobility.sigma, mover.mobility.reach)
         kept = [x, y, clamp(w, -spin, spin)]
+        movers.world.seen["held back"] += kept != mover.v
         mover.begin = [clamp(b + c - v, -BOUND, BOUND) for b, c, v in zip(mover.begin, kept, mover.v)]
         mover.v = kept
