@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace as Row
 
+import squeeze
 from ints import clamp, div, mul, round_shift, sat64
 from motion import FAR, POSITION, TURNS, turn_by
 from ratios import SPEED_MAX
@@ -11,6 +12,7 @@ CONTACT_SPEED = 5
 TURNING = 1 << 44
 EIGHTH_TURN = 843_314_857
 BOUND = 1 << 60
+TREMOR = 4
 
 
 def bounded(v):
@@ -36,6 +38,8 @@ class Mover:
         self.v, self.d = list(self.begin), [0, 0, 0]
         self.kick, self.cut, self.sum = [0, 0, 0], [0, 0, 0], [0, 0, 0]
         self.hit = self.pushed = self.slowed = False
+        # How fast it may be while it is squeezed, Q48 over 2^k; 0: as fast as it likes.
+        self.most = 0
         if mobility:
             fast = div(mobility.sigma * SPEED_MAX << 48, max(mobility.reach, 1))
             eighth = round_shift(mobility.sigma * scales.rate * EIGHTH_TURN, scales.shift + 14)
@@ -175,6 +179,7 @@ class Movers:
         if place == 0:
             return
         mover, scales = self.list[place], self.scales
+        squeeze.allow(mover, change, self.world.seen)
         then = held([mover.v[axis] + change[axis] for axis in range(3)])
         for axis in range(3):
             by = then[axis] - mover.v[axis]
@@ -183,6 +188,13 @@ class Movers:
             mover.sum[axis] += round_shift(by * left * scales.substeps, 60)
         mover.v = then
         mover.go(scales)
+
+    def way(self, mover):
+        """What it went; nothing if that is only what rows leave over of rest."""
+        if any(abs(way) > TREMOR * self.scales.substeps for way in mover.sum):
+            return mover.sum
+        self.world.seen["stayed in spite of a tremor"] += any(mover.sum)
+        return [0, 0, 0]
 
     def store(self, faults):
         """Bodies that contacts pushed, to where contacts bring them."""
@@ -193,12 +205,13 @@ class Movers:
                 continue
             if mover.slowed:
                 faults.append((slot, CONTACT_SPEED))
+            way = self.way(mover)
             for axis, column in enumerate((state.x, state.y)):
-                moved = begin.x[axis] + mul(mover.sum[axis], scales.line, 51 - k)
+                moved = begin.x[axis] + mul(way[axis], scales.line, 51 - k)
                 column[slot] = clamp(moved, -FAR, FAR)
                 if column[slot] != moved:
                     faults.append((slot, POSITION))
-            rolled = mul(mover.sum[2], scales.turn, 33)
+            rolled = mul(way[2], scales.turn, 33)
             state.angle[slot], over = turn_by(begin.angle, mover.mobility.over_sigma(rolled, 50 - k, 48))
             if over:
                 faults.append((slot, TURNS))

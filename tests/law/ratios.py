@@ -8,6 +8,7 @@ SLOP = 6711
 FIRM = 1 << 17
 HEAVY = 1 << 48
 HARD = 3 << 46
+SQUEEZED = 6 << 48
 MARGIN, SLACK = 85_899_346, 4_294_967
 SPEED = 1 << 48
 TICK = 1 << 32
@@ -35,6 +36,10 @@ class Scales:
     def span(self, substep):
         """When a substep begins and ends, from 1 on; Q32 of the tick."""
         return [(n << 32) // self.substeps for n in (substep - 1, substep)]
+
+    def is_squeezed(self, normal, overlap):
+        """Whether bodies that overlap so much, with these impulses of the last tick, are squeezed."""
+        return normal[0] + normal[1] >= SQUEEZED and overlap > 2 * self.slack
 
     def threshold(self, restitution, press, among):
         """The speed of approach from which on a pair strikes."""

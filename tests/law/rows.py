@@ -217,8 +217,9 @@ def answer(biased, speed, load, separation, scales):
         way, rate, mass, give = separation, scales.close_rate, 1 << 30, 0
     else:
         way, rate, mass, give = min(separation + SLOP, 0), scales.push_rate, SOFT_MASS, SOFT_IMPULSE
-    bias = max(way * rate >> 20, scales.push)
-    give *= min(load, (load >> 2) + scales.firm)
-    sum_ = mass * limit(speed + bias) + give
-    pushes = bias < 0 and (mass * bias + give < PUSHES or load < LOAD)
-    return clamp(load - round_shift(sum_, 30), 0, IMPULSE_MAX), pushes
+    bias = min(limit(way * rate >> 20), (1 << 30) - 1)
+    # What the load leaves of the bias opens the overlap, and not too fast.
+    opens = mass * bias + give * min(load, (load >> 2) + scales.firm)
+    pushes = bias < 0 and (opens < PUSHES or load < LOAD)
+    answers = fits(mass * limit(speed) + max(opens, SOFT_MASS * scales.push), 64)
+    return clamp(load - round_shift(answers, 30), 0, IMPULSE_MAX), pushes

@@ -27,22 +27,23 @@ def differs(path, state, recorded):
 
 
 def run(path):
-    """How many ticks were the same, and what was not."""
-    ticks = 0
+    """How many ticks were the same, what was not, and how often the law's rarer paths were gone."""
+    ticks, seen = 0, {}
     try:
         records = play(path.read_bytes())
         world = World(next(records))
+        seen = world.seen
         for recorded, commands, steps in records:
             for command in commands:
                 world.command(command)
             if steps:
                 world.step()
             if state_hash(world.state) != recorded:
-                return ticks, differs(path, world.state, recorded)
+                return ticks, differs(path, world.state, recorded), seen
             ticks += steps
     except (Bad, OSError) as error:
-        return ticks, f"{type(error).__name__}: {error}"
-    return ticks, None
+        return ticks, f"{type(error).__name__}: {error}", seen
+    return ticks, None, seen
 
 
 def main(arguments):
@@ -50,9 +51,10 @@ def main(arguments):
     paths = [Path(a) for a in arguments] or [REPLAYS / f"{name}.replay" for name in GOLDENS]
     for path in sorted(REPLAYS.glob("*.replay")) if arguments == ["--all"] else paths:
         start = time.monotonic()
-        ticks, wrong = run(path)
+        ticks, wrong, seen = run(path)
         failed |= wrong is not None
-        print(f"{path.stem}: {ticks} ticks the same, {time.monotonic() - start:.1f} s", flush=True)
+        rare = "".join(f", {count} {what}" for what, count in sorted(seen.items()) if count)
+        print(f"{path.stem}: {ticks} ticks the same, {time.monotonic() - start:.1f} s{rare}", flush=True)
         if wrong:
             print(f"  {wrong}", flush=True)
     return int(failed)

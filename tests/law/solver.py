@@ -2,6 +2,7 @@
 
 import direct
 import narrow
+import squeeze
 from ints import cross, dot, mul, rotate, sin_cos
 from motion import integrate
 from movers import Movers, state_of
@@ -78,8 +79,10 @@ def prepare(world, pairs, movers):
         pair.places = [movers.place(slot) for slot in pair.bodies]
         last = pair.known or old()
         pair.heavy, pair.mode = last.normal[0] + last.normal[1] >= HEAVY, last.mode
+        pair.squeezes = scales.is_squeezed(last.normal, pair.overlap())
         pair.turning = movers.turns and turns(world, pair, past, scales)
     movers.look_brisk()
+    squeeze.find(held, movers)
     hard = direct.find([vote(world, pair, past, scales) for pair in held], held, movers)
     for pair in held:
         between = narrow.sub(past[pair.bodies[1]].x, past[pair.bodies[0]].x)
@@ -146,6 +149,7 @@ def substeps(world, held, islands, movers, timeline):
             contact.solve(True, movers.list, scales)
         for island in islands:
             island.run(True)
+        squeeze.hold(movers)
         movers.drift()
         timeline.run(*scales.span(substep))
         for contact, _ in rows:
@@ -169,6 +173,7 @@ def substeps(world, held, islands, movers, timeline):
                 contact.solve(False, movers.list, scales)
         for island in islands:
             island.run(False)
+    squeeze.hold(movers)
     for contact, places in rows:
         if contact.spent():
             for place in places:

@@ -1,5 +1,6 @@
 """The state: slots, commands, and one tick."""
 
+from collections import Counter
 from itertools import count
 from types import SimpleNamespace as Row
 
@@ -82,6 +83,8 @@ def center_at(origin, center, angle):
 class World:
     def __init__(self, state):
         self.state, self.drive, self.outlines = state, None, {}
+        # How often what is rare was computed: tests ask for it.
+        self.seen = Counter()
 
     def is_asleep(self, slot):
         return bool(self.state.quiet) and self.state.quiet[slot] == sleep.ASLEEP
