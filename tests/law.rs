@@ -1,5 +1,6 @@
 //! The arithmetic law by a second implementation, in plain Python integers (`tests/law`): kernels, goldens, and scenes
-//! made of random numbers, whose every tick's hash Python has to find as well.
+//! made of random numbers, whose every tick's hash Python has to find as well. What is rare is sought in scenes of its own,
+//! and Python says whether it came to that.
 //!
 //! It needs `python3`. Without one these tests say so and hold nothing, but where `TAMIAS_PYTHON` is set (as `.ci/run`
 //! does) they fail.
