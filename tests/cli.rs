@@ -794,6 +794,18 @@ fn diff_names_what_differs_and_what_to_do() {
         assert!(text.contains("body 1v0 (user data 7)") && text.contains("velocity.x"), "{text}");
     }
 
+    // Evidence that says another hash than its memory has, sealed anew.
+    let mut bytes = std::fs::read(&of_a).expect("written");
+    bytes[24] ^= 1;
+    let end = bytes.len() - 8;
+    let seal = twox_hash::XxHash3_64::oneshot(&bytes[..end]).to_le_bytes();
+    bytes[end..].copy_from_slice(&seal);
+    let forged = folder.join("forged.evidence");
+    std::fs::write(&forged, bytes).expect("written");
+    let output = tamias(&["diff", shown(&of_a), shown(&forged)]);
+    assert_eq!(output.status, 1, "{}", output.out);
+    assert!(output.out.contains("agrees, and the hashes do not"), "{}", output.out);
+
     // What cannot be compared, or read.
     let text = folder.join("text");
     std::fs::write(&text, "no recording at all").expect("written");

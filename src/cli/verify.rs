@@ -122,7 +122,8 @@ impl Verify {
         let jobs = self.jobs.map_or(cores, |jobs| jobs as usize);
         // A file that is not whole is played from its beginning, up to where it is not.
         let whole = |path: &PathBuf| open(path).ok().and_then(|player| player.inspect().ok());
-        let split = |path: &PathBuf| whole(path).map_or(vec![WHOLE], |contents| Segment::of(&contents));
+        let most = jobs.saturating_mul(PIECES);
+        let split = |path: &PathBuf| whole(path).map_or(vec![WHOLE], |contents| Segment::few(&contents, most));
         let segments: Vec<Vec<Segment>> = side_by_side(jobs, files.len(), |at| split(&files[at]));
         let work: Vec<(usize, Segment)> = segments
             .into_iter()
@@ -195,6 +196,9 @@ impl Verify {
         out.flush()
     }
 }
+
+/// So many pieces of a recording are made for each thread: enough that none waits long for the last one.
+const PIECES: usize = 8;
 
 /// A recording in one piece.
 const WHOLE: Segment = Segment { from: None, to: None };

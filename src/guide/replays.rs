@@ -1,7 +1,7 @@
 //! # Replays
 //!
 //! Record always. A recording holds the world as it began, every command, and the hash of the complete state after each tick; an
-//! idle tick costs 13 bytes. It is a save game, a highlight, a bug report, and the only proof of what a machine computed.
+//! idle tick costs 9 bytes. It is a save game, a highlight, a bug report, and the only proof of what a machine computed.
 //!
 //! ```
 //! use tamias2d::replay::{Player, Recorder};

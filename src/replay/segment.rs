@@ -39,6 +39,15 @@ impl Segment {
         starts.zip(ends).map(|(from, to)| Segment { from, to }).collect()
     }
 
+    /// The same in at most so many pieces, one at least. Each piece loads a world, and who has made a file may have put a keyframe
+    /// behind every tick.
+    pub fn few(contents: &Contents, most: usize) -> Vec<Segment> {
+        let all = Segment::of(contents);
+        let run = all.len().div_ceil(most.max(1)).max(1);
+        let join = |run: &[Segment]| Some(Segment { from: run.first()?.from, to: run.last()?.to });
+        all.chunks(run).filter_map(join).collect()
+    }
+
     /// The ticks before it.
     pub fn start(&self) -> u64 {
         self.from.map_or(0, |keyframe| keyframe.tick)

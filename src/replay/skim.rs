@@ -52,11 +52,10 @@ pub(super) struct Skimmer<R> {
     /// The last keyframe before the tick read last; and the last one read.
     keyframe: Option<Keyframe>,
     found: Option<Keyframe>,
-    evidence: Vec<Evidence>,
+    /// Of the tick that is wanted, else of the tick read last; one of each is enough, however often an alarm rang.
+    evidence: Option<Evidence>,
+    wanted: Option<u64>,
 }
-
-/// So much evidence is kept that lies just behind a tick: that of it and of the one before.
-const KEPT: usize = 2;
 
 impl<R: Read> Skimmer<R> {
     /// `place`: the keyframe that the player comes from.
@@ -64,7 +63,7 @@ impl<R: Read> Skimmer<R> {
         let (world, recorded) = (player.world(), player.ticks());
         let begun = world.tick().saturating_sub(recorded);
         let now = Tick { tick: world.tick(), recorded, hash: world.hash(), ..Tick::default() };
-        Skimmer { player, begun, now, ahead: None, keyframe: place, found: place, evidence: Vec::new() }
+        Skimmer { player, begun, now, ahead: None, keyframe: place, found: place, evidence: None, wanted: None }
     }
 
     /// The tick read last; at first that with which it begins.
@@ -83,7 +82,7 @@ impl<R: Read> Skimmer<R> {
             return Ok(false);
         }
         self.keyframe = self.found;
-        self.evidence.clear();
+        self.evidence = self.evidence.take().filter(|_| self.wanted.is_some());
         self.now = core::mem::take(&mut self.ahead).unwrap_or_default();
         self.look_ahead()?;
         Ok(true)
@@ -111,9 +110,11 @@ impl<R: Read> Skimmer<R> {
                 }
                 Step::Evidence { offset } => {
                     let decode = |error| ReplayError::Decode { tick: self.player.ticks(), offset, error };
-                    self.evidence.push(Evidence::decode(self.player.payload()).map_err(decode)?);
-                    let surplus = self.evidence.len().saturating_sub(KEPT);
-                    self.evidence.drain(..surplus);
+                    let evidence = Evidence::decode(self.player.payload()).map_err(decode)?;
+                    let wanted = self.wanted.unwrap_or(self.now.tick);
+                    if self.evidence.is_none() && evidence.tick() == wanted {
+                        self.evidence = Some(evidence);
+                    }
                 }
             }
         }
@@ -122,13 +123,12 @@ impl<R: Read> Skimmer<R> {
 
     /// Reads the rest for the evidence of the tick read last, and for parts at it or after it.
     pub(super) fn rest(mut self) -> Result<Rest, ReplayError> {
-        let tick = self.now.tick;
-        let (mut evidence, mut parts) = (None, None);
+        self.wanted = Some(self.now.tick);
+        let mut parts = None;
         loop {
-            evidence = evidence.or_else(|| self.evidence.iter().find(|kept| kept.tick() == tick).cloned());
             parts = parts.or(self.now.parts.map(|parts| (self.now.tick, parts)));
             if !self.next()? {
-                return Ok(Rest { evidence, parts });
+                return Ok(Rest { evidence: self.evidence, parts });
             }
         }
     }

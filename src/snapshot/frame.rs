@@ -212,12 +212,13 @@ impl World {
 
     /// Whether a step of this world, whose tables are those of the frame, could have come to it: what [`World::load`] asks of a save.
     fn could_be_at(&self, frame: &Frame) -> bool {
-        let Frame { tick, motion, quiet, contacts, pushes, status, clock, .. } = frame;
+        let Frame { tick, motion, quiet, contacts, resting, pushes, status, clock, .. } = frame;
         let mut copy = self.clone();
         copy.tick = *tick;
         motion.copy_to(&mut copy.bodies);
         copy.bodies.rest = Rest::of(quiet);
         copy.contacts.clone_from(contacts);
+        copy.resting.contacts.clone_from(resting);
         copy.pushes.clone_from(pushes);
         copy.status.clone_from(status);
         copy.clock_hash() == *clock && copy.bodies.check_values().is_ok() && copy.check_lists().is_ok()

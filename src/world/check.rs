@@ -48,7 +48,7 @@ impl World {
     /// What is left to check of a world whose tables were read and are sound in themselves: the configuration, and
     /// the lists that refer to bodies. The first broken invariant, in words.
     pub(crate) fn check_lists(&self) -> Result<(), String> {
-        let World { config, bodies, colliders, attractors, pushes, contacts, status, .. } = self;
+        let World { config, bodies, colliders, attractors, pushes, contacts, resting, status, .. } = self;
         config.check().map_err(|error| error.to_string())?;
         let limits = config.sleeping.map(|sleeping| sleeping.limits(config.tick_rate, config.unit_shift));
         if bodies.rest.len() != limits.map_or(0, |_| bodies.cold.len()) {
@@ -58,6 +58,9 @@ impl World {
             return Err("a body has been quiet for longer than is counted".into());
         }
         contacts.check().map_err(|reason| format!("the list of contacts {reason}"))?;
+        if config.sleeping.is_none() && resting.contacts.len() > 0 {
+            return Err("there are contacts of what sleeps where nobody can".into());
+        }
         // Each collider belongs to exactly one body's list, and to the body that it says.
         let mut listed = 0u32;
         for (slot, data) in bodies.cold.iter() {

@@ -148,6 +148,10 @@ pub(super) fn state() -> Vec<Kind> {
         "bodies" "allow_sleep" ALWAYS |w, i of w.bodies.cold.len(), d| flip(&mut w.bodies.cold.memory(i).2.allow_sleep, i, d);
         "slots of bodies" "free" ALWAYS |w, i of 1, d| flip(w.bodies.cold.chain_memory()[0], i, d);
         "slots of bodies" "live" ALWAYS |w, i of 1, d| flip(w.bodies.cold.chain_memory()[1], i, d);
+        "slots of bodies" "digest" ALWAYS |w, i of 1, d| flip(w.bodies.cold.digest_memory(), i, d);
+        "slots of colliders" "digest" ALWAYS |w, i of 1, d| flip(w.colliders.rows.digest_memory(), i, d);
+        "slots of forms" "digest" ALWAYS |w, i of 1, d| flip(w.colliders.forms.digest_memory(), i, d);
+        "slots of attractors" "digest" ALWAYS |w, i of 1, d| flip(w.attractors.digest_memory(), i, d);
         "colliders" "generation" ALWAYS |w, i of w.colliders.rows.len(), d| flip(w.colliders.rows.memory(i).0, i, d);
         "colliders" "link" ALWAYS |w, i of w.colliders.rows.len(), d| flip(w.colliders.rows.memory(i).1, i, d);
         "colliders" "body" ALWAYS |w, i of w.colliders.rows.len(), d| flip(&mut w.colliders.rows.memory(i).2.body, i, d);
@@ -364,7 +368,7 @@ fn a_fault_between_stages_is_named_exactly() {
     }
     let kinds: Vec<Kind> = [state(), derived(), results()].into_iter().flatten().collect();
     let mut tried = vec![0u32; kinds.len()];
-    for _ in 0..6 {
+    for _ in 0..8 {
         ready(&mut world, &mut dice);
         let clean = Evidence::of_step(&mut world.clone());
         for (at, kind) in kinds.iter().enumerate() {

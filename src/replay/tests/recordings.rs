@@ -118,6 +118,30 @@ fn a_fault_in_cold_memory_is_found_at_the_next_keyframe() {
     }
 }
 
+/// With three peers, or checksums each tenth tick, several alarms are heard at once, and the first bad tick is not the last of them.
+#[test]
+fn evidence_is_found_among_that_of_several_alarms() {
+    let options = Recording { flight_ticks: 32, ..Recording::default() };
+    let game = || Recorder::with(world_of_everything(), Cursor::new(Vec::new()), options).expect("memory");
+    let mut games = [game(), game()];
+    for tick in 1..=100u64 {
+        if tick == 70 {
+            games[1].world.bodies.omega.bits_mut()[4] ^= 1 << 40;
+        }
+        games.iter_mut().for_each(Recorder::step);
+        if tick == 92 {
+            for at in [70, 80, 90] {
+                assert!(games.iter_mut().all(|game| game.alarm(at)));
+            }
+        }
+    }
+    let [mut a, mut b] = games.map(|game| game.finish().expect("memory"));
+    let Comparison::Parted { tick, accounts, .. } = compare([&mut a, &mut b]).expect("both can be read") else {
+        panic!("they part");
+    };
+    assert_eq!((tick, accounts.map(|account| account.evidence.map(|found| found.tick()))), (70, [Some(70); 2]));
+}
+
 #[test]
 fn segments_verify_what_the_whole_does() {
     let mut game = Recorder::with(
@@ -147,6 +171,12 @@ fn segments_verify_what_the_whole_does() {
         last = Some(segment.verify(file.clone(), |_| ticks += 1).expect("it plays"));
     }
     assert_eq!((ticks, last), (260, Some(whole)));
+    for (most, starts) in [(0, &[0][..]), (1, &[0]), (2, &[0, 180]), (4, &[0, 120, 240]), (9, &[0, 60, 120, 180, 240])] {
+        let few = Segment::few(&contents, most);
+        assert_eq!(few.iter().map(Segment::start).collect::<Vec<_>>(), starts);
+        let ends: Vec<_> = few.iter().map(|segment| segment.verify(file.clone(), |_| ()).expect("it plays")).collect();
+        assert_eq!(ends.last(), Some(&whole));
+    }
     assert_eq!(super::super::read_index(&mut file.clone()).expect("an index"), contents.keyframes);
     // And from each keyframe on to the end.
     for keyframe in &contents.keyframes {
