@@ -328,3 +328,54 @@ fn an_alarm_tells_the_world_from_the_game() {
         "desync at tick 7: the worlds differ, 0000000000000001 here and 0000000000000004 there, and the game's own states, 0000000000000002 and 0000000000000003; compare the evidence or the recordings of both: tamias2d diff HERE THERE"
     );
 }
+
+/// A type that does not read what it writes is told from a state that is not kept.
+#[test]
+fn a_state_that_cannot_be_read_back_says_so() {
+    #[derive(Serialize, Deserialize)]
+    struct Forgetful {
+        #[serde(skip_serializing)]
+        score: u32,
+    }
+    impl Game for Forgetful {
+        type Input = i8;
+        fn act(&mut self, _: &[Option<i8>], _: &mut Turn<'_>) {
+            self.score += 1;
+        }
+    }
+    let mut lockstep = Lockstep::new(Forgetful { score: 0 }, world(0.0, 0.0)).expect("small");
+    let builder = SessionBuilder::<Net<Forgetful>>::new().with_num_players(1).expect("one");
+    let mut session = builder.with_check_distance(2).start_synctest_session().expect("a session");
+    let mut tick = || {
+        session.add_local_input(0, 0).expect("a player");
+        lockstep.advance(&mut session)
+    };
+    let error = (0..9).find_map(|_| tick().err()).expect("it goes back, and cannot");
+    assert_eq!(error, LockstepError::Unreadable);
+    assert!(error.to_string().contains("cannot be read back"), "{error}");
+}
+
+/// As large as it may be, of what takes more room in memory than as bytes.
+#[test]
+fn a_state_of_nearly_a_mebibyte_goes_back() {
+    #[derive(Serialize, Deserialize)]
+    struct Large {
+        map: Vec<(u8, u64)>,
+        names: Vec<String>,
+    }
+    impl Game for Large {
+        type Input = i8;
+        fn act(&mut self, _: &[Option<i8>], _: &mut Turn<'_>) {
+            self.map[0].1 += 1;
+        }
+    }
+    let game = Large { map: vec![(1, 2); 90_000], names: vec!["abcdefgh".into(); 14_000] };
+    let mut lockstep = Lockstep::new(game, world(0.0, 0.0)).expect("1 034 000 bytes");
+    let builder = SessionBuilder::<Net<Large>>::new().with_num_players(1).expect("one");
+    let mut session = builder.with_check_distance(2).start_synctest_session().expect("a session");
+    for _ in 0..6 {
+        session.add_local_input(0, 0).expect("a player");
+        lockstep.advance(&mut session).expect("it goes back");
+    }
+    assert_eq!(lockstep.game().map[0].1, 8);
+}

@@ -1000,6 +1000,22 @@ fn keyframes_that_hold_another_world_are_found_by_playing() {
     assert_eq!(verify(&file(&world)).expect("it plays").ticks, 1);
     let found = error(&file(&other));
     assert!(matches!(found, ReplayError::DivergedKeyframe { tick: 1, .. }), "{found:?}");
+    // Seeking goes by ticks: one of two behind a tick would not be found, nor one behind none.
+    let twice = keyframe(keyframe(Forge::new(60).world(&start()).idle(first), &world), &world).end(1);
+    let mut none = Forge::new(60).world(&start());
+    let mut payload = Vec::new();
+    for value in [0, 0, start().hash(), none.chain, none.bytes.len() as u64] {
+        payload.extend(value.to_le_bytes());
+    }
+    payload.extend(start().save());
+    none = none.record(0x80, &payload);
+    for file in [twice, none.idle(first).end(1)] {
+        let found = error(&file);
+        assert!(
+            matches!(found, ReplayError::Corrupt { .. }) && found.to_string().contains("two behind one"),
+            "{found}"
+        );
+    }
     // Parts as well.
     let mut parts: Vec<u8> = world.hash_parts().iter().flat_map(|part| part.hash.to_le_bytes()).collect();
     let with_parts = |parts: &[u8]| Forge::new(60).world(&start()).idle(first).record(0x81, parts).end(1);

@@ -13,6 +13,8 @@ pub enum LockstepError {
     Session(GgrsError),
     /// The game's own state cannot be written.
     State,
+    /// The game's own state was written, and its type does not read what it writes.
+    Unreadable,
     /// A state that is asked for is not kept.
     Gone {
         /// Its tick.
@@ -37,6 +39,9 @@ impl fmt::Display for LockstepError {
             LockstepError::State => {
                 f.write_str("the game's own state cannot be written: it has more than 1 MiB, or a type that refuses")
             }
+            LockstepError::Unreadable => f.write_str(
+                "the game's own state was saved and cannot be read back: its Deserialize must read what its Serialize writes",
+            ),
             LockstepError::Gone { tick } => {
                 write!(
                     f,

@@ -277,11 +277,12 @@ impl<G: Game> Lockstep<G> {
 
     /// Goes back to a tick that was saved.
     fn go_back(&mut self, tick: u64) -> Result<(), LockstepError> {
-        let game = self.ring.own(tick).and_then(crate::store::read_value);
-        match game {
-            Some(game) if self.ring.restore(&mut self.world, tick) => self.game = game,
-            _ => return Err(LockstepError::Gone { tick }),
+        let own = self.ring.own(tick).ok_or(LockstepError::Gone { tick })?;
+        let game = crate::store::read_value(own).ok_or(LockstepError::Unreadable)?;
+        if !self.ring.restore(&mut self.world, tick) {
+            return Err(LockstepError::Gone { tick });
         }
+        self.game = game;
         while self.moments.back().is_some_and(|moment| moment.tick > tick) {
             self.spare.extend(self.moments.pop_back());
         }

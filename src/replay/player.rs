@@ -67,6 +67,8 @@ pub struct Player<R> {
     finished: bool,
     /// Where the last keyframe with a whole save is.
     base: Option<u64>,
+    /// The ticks before the last keyframe; 0 without one.
+    marked: u64,
     states: States,
     /// Where the index is, once it has been read; and a hash of the keyframes so far.
     index: u64,
@@ -117,6 +119,7 @@ impl<R: Read> Player<R> {
             had_tail: false,
             finished: false,
             base: Some(base),
+            marked: 0,
             states,
             index: 0,
             seen: 0,
@@ -130,6 +133,7 @@ impl<R: Read> Player<R> {
         states.resume(&world, head.base);
         let mut player = Self::begun(records, world, head.history, (head.base, states));
         (player.ticks, player.commands, player.is_resumed) = (head.tick, head.commands, true);
+        player.marked = head.tick;
         player
     }
 

@@ -93,6 +93,12 @@ impl<R: Read> Player<R> {
         if head != expected || self.had_tail {
             return Err(ReplayError::Corrupt { tick: 0, offset, reason: "the keyframe is not of this place" });
         }
+        // Keyframes are found by their ticks.
+        if head.tick <= self.marked {
+            let reason = "a keyframe is not behind a tick, or there are two behind one";
+            return Err(ReplayError::Corrupt { tick: 0, offset, reason });
+        }
+        self.marked = head.tick;
         if head.base == offset {
             self.base = Some(offset);
         } else if self.base != Some(head.base) {

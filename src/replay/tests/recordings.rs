@@ -171,7 +171,8 @@ fn segments_verify_what_the_whole_does() {
         last = Some(segment.verify(file.clone(), |_| ticks += 1).expect("it plays"));
     }
     assert_eq!((ticks, last), (260, Some(whole)));
-    for (most, starts) in [(0, &[0][..]), (1, &[0]), (2, &[0, 180]), (4, &[0, 120, 240]), (9, &[0, 60, 120, 180, 240])] {
+    for (most, starts) in [(0, &[0][..]), (1, &[0]), (2, &[0, 180]), (4, &[0, 120, 240]), (9, &[0, 60, 120, 180, 240])]
+    {
         let few = Segment::few(&contents, most);
         assert_eq!(few.iter().map(Segment::start).collect::<Vec<_>>(), starts);
         let ends: Vec<_> = few.iter().map(|segment| segment.verify(file.clone(), |_| ()).expect("it plays")).collect();
