@@ -41,15 +41,19 @@ impl Kernel {
     /// [`Block::solve`].
     #[inline]
     pub(super) fn solve<const BIASED: bool>(self, block: &mut Block, lanes: u8, movers: &mut [Mover], scales: &Scales) {
-        let (blows, pushes) = match self {
-            Kernel::Definition => return block.solve::<BIASED>(lanes, movers, scales),
+        match self {
+            Kernel::Definition => block.solve::<BIASED>(lanes, movers, scales),
             #[cfg(target_arch = "x86_64")]
-            Kernel::Avx2(avx2) => avx2.sweep::<BIASED>(block, lanes, movers, scales),
+            Kernel::Avx2(avx2) => {
+                let swept = avx2.sweep::<BIASED>(block, lanes, movers, scales);
+                block.go_on::<BIASED>(swept, movers, scales);
+            }
             #[cfg(all(target_arch = "x86_64", avx512))]
-            Kernel::Avx512(avx512) => avx512.sweep::<BIASED>(block, lanes, movers, scales),
-        };
-        block.pushes = pushes;
-        block.go_rounds::<BIASED>(blows, movers, scales);
+            Kernel::Avx512(avx512) => {
+                let swept = avx512.sweep::<BIASED>(block, lanes, movers, scales);
+                block.go_on::<BIASED>(swept, movers, scales);
+            }
+        }
     }
 
     /// [`Block::warm_start`].

@@ -157,13 +157,18 @@ impl Block {
             blows |= u8::from(blow) << i;
             pushes |= u8::from(pushed) << i;
         }
-        self.pushes = pushes;
-        self.go_rounds::<BIASED>(blows, movers, scales);
+        self.go_on::<BIASED>((blows, pushes), movers, scales);
     }
 
-    /// After a sweep: what is to be done about the contacts that took a blow. The others share no body with them.
+    /// After a sweep, of which contacts took a blow and which pushed: the former go round. The others share no body with them.
     #[inline(always)]
-    pub(super) fn go_rounds<const BIASED: bool>(&mut self, blows: u8, movers: &mut [Mover], scales: &Scales) {
+    pub(super) fn go_on<const BIASED: bool>(
+        &mut self,
+        (blows, pushes): (u8, u8),
+        movers: &mut [Mover],
+        scales: &Scales,
+    ) {
+        self.pushes = pushes;
         if blows != 0 {
             for i in (0..LANES).filter(|i| blows >> i & 1 != 0) {
                 self.go_round::<BIASED>(i, movers, scales);
