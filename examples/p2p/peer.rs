@@ -283,13 +283,14 @@ fn keep_evidence(options: &Options, role: Role, lockstep: &Lockstep<Arena>) -> R
     Ok(())
 }
 
-/// A spectator has room for the inputs of 60 frames, and ggrs cuts off who leaves 128 unanswered: the match must not run away
-/// from him.
+/// The match must not run away from a spectator. ggrs answers only what it can decode, and for that keeps the inputs of the last 16
+/// frames (twice the window that a spectator's session has by default): if he gets more than that at once and the one answer to
+/// it is lost, host and spectator wait for each other for ever. So fewer are under way.
 fn pace(session: &mut P2PSession<Net<Arena>>, spectator: Option<usize>, over: &AtomicBool) {
     let Some(handle) = spectator else { return };
     loop {
         match session.network_stats(handle) {
-            Ok(stats) if stats.send_queue_len < 30 => return,
+            Ok(stats) if stats.send_queue_len < 14 => return,
             Ok(_) if !over.load(Ordering::Relaxed) => {
                 std::thread::sleep(Duration::from_micros(200));
                 session.poll_remote_clients();
