@@ -3,6 +3,8 @@
 mod event;
 mod find;
 mod island;
+mod look;
+mod proxy;
 mod row;
 mod wake;
 mod ways;
