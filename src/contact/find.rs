@@ -8,7 +8,7 @@ use super::island::rests;
 use super::look::{Look, Looks};
 use super::proxy::{Proxies, Proxy};
 use super::row::{Contact, Contacts};
-use super::ways::{along, common_way, rim_speed, way};
+use super::ways::{along, common_way, way};
 use crate::body::{Bodies, Colliders};
 use crate::broad::Broad;
 use crate::geom::{Aabb, Vec2};
@@ -161,7 +161,8 @@ impl Touch {
             let (a, b) = self.broad.candidates()[self.close[at] as usize];
             let slots = [a as usize, b as usize];
             let body = slots.map(|slot| self.proxies.get(slot).body);
-            if any_asleep && rests(bodies, colliders, [a, b], body) || self.are_apart(slots, bodies, colliders, margins) {
+            if any_asleep && rests(bodies, colliders, [a, b], body) || self.are_apart(slots, bodies, colliders, margins)
+            {
                 continue;
             }
             let look = self.looks.next([a, b]);
@@ -318,14 +319,20 @@ impl See<'_> {
         let [a, b] = slots.map(|slot| proxies.get(slot));
         let between = |c: &[i64]| c[b.body as usize].saturating_sub(c[a.body as usize]);
         let d = [between(bodies.x.bits()), between(bodies.y.bits())];
-        let known = look.d == d && look.tick >= a.turned.tick.max(b.turned.tick);
-        if known && look.near.manifold.count > 0 && look.near.holds(margins.base) && look.near.below == i64::MAX {
-            // All of its points are within the margin, so it does not matter how fast they are.
-            return Some(look.near.manifold.clone());
-        }
+        let mut known = look.d == d && look.tick >= a.turned.tick.max(b.turned.tick);
         let [placed_a, placed_b] = slots.map(|slot| proxies.placed(slot));
         if a.sensor || b.sensor {
             return overlap(placed_a, placed_b, d).then(Manifold::default);
+        }
+        // Where all points are within the margin it does not matter how fast they are, and most pairs stay so.
+        let rests = |near: &Near| near.manifold.count > 0 && near.holds(margins.base) && near.below == i64::MAX;
+        let rested = rests(&look.near);
+        if rested && !known {
+            (look.tick, look.d, look.near) = (proxies.now(), d, near(placed_a, placed_b, d, margins.base));
+            known = true;
+        }
+        if rested && rests(&look.near) {
+            return Some(look.near.manifold.clone());
         }
         let ahead = self.ahead();
         let limit = margins.base.saturating_add(ahead);
@@ -349,10 +356,10 @@ impl See<'_> {
         let See { bodies, drive, margins, .. } = *self;
         let [a, b] = self.slots.map(|slot| self.proxies.get(slot));
         let bodies_of = [a.body as usize, b.body as usize];
-        let (vx, vy, omega) = (bodies.vx.bits(), bodies.vy.bits(), bodies.omega.bits());
+        let (vx, vy) = (bodies.vx.bits(), bodies.vy.bits());
         let apart = |c: &[i64]| c[bodies_of[0]].saturating_sub(c[bodies_of[1]]).saturating_abs();
-        let rim = |proxy: &Proxy| rim_speed(omega[proxy.body as usize], proxy.reach);
-        let fastest = [apart(vx), apart(vy), rim(a), rim(b)];
+        let [rim_a, rim_b] = self.slots.map(|slot| self.proxies.rim(slot, bodies));
+        let fastest = [apart(vx), apart(vy), rim_a, rim_b];
         let fastest = fastest.iter().fold(0i64, |sum, &speed| sum.saturating_add(speed));
         let [ga, gb] = bodies_of.map(|body| drive.gain(body, margins.tick));
         let pressed = [0, 1].map(|axis: usize| ga[axis].saturating_sub(gb[axis]).saturating_abs());

@@ -48,6 +48,8 @@ pub(super) struct Proxies {
     placed: Vec<Placed>,
     /// Boxes around the ways of this tick; where the outline is not turned, around all in which it may lie.
     boxes: Vec<Aabb>,
+    /// How fast turning moves what reaches farthest, Q48 m/s; of what moves and has its outline turned in this tick.
+    rims: Vec<i64>,
     /// Counts ticks.
     now: u64,
 }
@@ -60,9 +62,10 @@ impl Clone for Proxies {
     }
 
     fn clone_from(&mut self, source: &Self) {
-        let Proxies { list, placed, boxes, now: _ } = source;
+        let Proxies { list, placed, boxes, rims, now: _ } = source;
         self.list.clone_from(list);
         self.boxes.clone_from(boxes);
+        self.rims.clone_from(rims);
         // Outlines are turned again.
         self.placed.resize_with(placed.len(), Placed::default);
         self.list.iter_mut().for_each(|proxy| proxy.turned = Turned::default());
@@ -100,6 +103,13 @@ impl Proxies {
         &self.placed[slot]
     }
 
+    /// How fast turning moves what of a pair's collider reaches farthest, Q48 m/s.
+    #[inline]
+    pub(super) fn rim(&self, slot: usize, bodies: &Bodies) -> i64 {
+        let Proxy { body, reach, still, .. } = self.list[slot];
+        if still { rim_speed(bodies.omega.bits()[body as usize], reach) } else { self.rims[slot] }
+    }
+
     pub(super) fn boxes(&self) -> &[Aabb] {
         &self.boxes
     }
@@ -111,6 +121,7 @@ impl Proxies {
             self.list.resize(slots, Proxy::default());
             self.placed.resize_with(slots, Placed::default);
             self.boxes.resize(slots, Aabb::default());
+            self.rims.resize(slots, 0);
         }
         let proxy = Proxy::new(slot, bodies, colliders);
         let (at, reach) = (bodies.position(proxy.body as usize), proxy.reach);
@@ -164,7 +175,8 @@ impl Proxies {
         // Turning moves no point farther than this, and none out of reach: so this box is within the one that the broad
         // phase was given, or its history would decide what is found.
         let placed = &self.placed[slot];
-        let rim = way(rim_speed(bodies.omega.bits()[body as usize], reach), margins.tick);
+        self.rims[slot] = rim_speed(bodies.omega.bits()[body as usize], reach);
+        let rim = way(self.rims[slot], margins.tick);
         let spare = |out: i64| reach.saturating_sub(out.saturating_add(rim)).max(0);
         let inward = |at: Length, by: i64| Length::from_bits(at.to_bits().saturating_add(by));
         let Aabb { min, max } = &mut self.boxes[slot];
