@@ -5,16 +5,16 @@
 
 use super::event::{Event, EventKind};
 use super::island::rests;
-use super::look::{Look, Looks};
+use super::look::{Looks, See};
 use super::proxy::{Proxies, Proxy};
 use super::row::{Contact, Contacts};
-use super::ways::{along, common_way, way};
+use super::ways::{along, common_way};
 use crate::body::{Bodies, Colliders};
 use crate::broad::Broad;
 use crate::geom::{Aabb, Vec2};
 use crate::motion::Drive;
-use crate::narrow::{Manifold, Near, near, overlap};
-use crate::num::{Length, cross, dot, mul};
+use crate::narrow::Manifold;
+use crate::num::Length;
 use crate::store::{Draft, Kind, Tables};
 
 /// How far ahead contacts are looked for.
@@ -123,6 +123,24 @@ impl Touch {
             self.broad.set_moving(slot as u32, around);
         }
         self.broad.touch(slot as u32);
+    }
+
+    /// Whether what is kept from tick to tick follows from bodies and colliders.
+    pub(crate) fn check(&self, bodies: &Bodies, colliders: &Colliders) -> Result<(), &'static str> {
+        if !self.proxies.check(bodies, colliders) {
+            return Err("knows a collider that is another one");
+        }
+        if self.looks.iter().all(|look| look.check(&self.proxies)) {
+            Ok(())
+        } else {
+            Err("has seen a pair that is not so")
+        }
+    }
+
+    /// Of how many pairs all was known in the last tick from an earlier one.
+    #[cfg(test)]
+    pub(super) fn known(&self) -> usize {
+        self.looks.iter().filter(|look| look.tick > 0 && look.tick < self.proxies.now()).count()
     }
 
     /// Adds to `found` the bodies of those colliders for which the broad phase has a fixed box, and which are `elsewhere`.
@@ -299,107 +317,6 @@ impl Touch {
             end(contacts.get(at), events);
         }
         core::mem::swap(contacts, next);
-    }
-}
-
-/// A pair whose boxes overlap.
-struct See<'t> {
-    proxies: &'t Proxies,
-    slots: [usize; 2],
-    bodies: &'t Bodies,
-    drive: &'t Drive,
-    margins: Margins,
-}
-
-impl See<'_> {
-    /// Its manifold; one without points for a sensor, and for two that are not near but may meet in this tick.
-    #[inline]
-    fn meet(&self, look: &mut Look) -> Option<Manifold> {
-        let See { proxies, slots, bodies, margins, .. } = *self;
-        let [a, b] = slots.map(|slot| proxies.get(slot));
-        let between = |c: &[i64]| c[b.body as usize].saturating_sub(c[a.body as usize]);
-        let d = [between(bodies.x.bits()), between(bodies.y.bits())];
-        let mut known = look.d == d && look.tick >= a.turned.tick.max(b.turned.tick);
-        let [placed_a, placed_b] = slots.map(|slot| proxies.placed(slot));
-        if a.sensor || b.sensor {
-            return overlap(placed_a, placed_b, d).then(Manifold::default);
-        }
-        // Where all points are within the margin it does not matter how fast they are, and most pairs stay so.
-        let rests = |near: &Near| near.manifold.count > 0 && near.holds(margins.base) && near.below == i64::MAX;
-        let rested = rests(&look.near);
-        if rested && !known {
-            (look.tick, look.d, look.near) = (proxies.now(), d, near(placed_a, placed_b, d, margins.base));
-            known = true;
-        }
-        if rested && rests(&look.near) {
-            return Some(look.near.manifold.clone());
-        }
-        let ahead = self.ahead();
-        let limit = margins.base.saturating_add(ahead);
-        if !known || !look.near.holds(limit) {
-            (look.tick, look.d, look.near) = (proxies.now(), d, near(placed_a, placed_b, d, limit));
-        }
-        let Near { apart, ref manifold, from, .. } = look.near;
-        if apart {
-            return None;
-        }
-        if manifold.count == 0 {
-            // Corner before corner: rows hold no such pair, so what matters is whether it may meet: whether less than its way
-            // is between them.
-            return (from <= ahead).then(Manifold::default);
-        }
-        self.of_this_tick(manifold, d)
-    }
-
-    /// How far the two may come nearer in this tick, Q32 m.
-    fn ahead(&self) -> i64 {
-        let See { bodies, drive, margins, .. } = *self;
-        let [a, b] = self.slots.map(|slot| self.proxies.get(slot));
-        let bodies_of = [a.body as usize, b.body as usize];
-        let (vx, vy) = (bodies.vx.bits(), bodies.vy.bits());
-        let apart = |c: &[i64]| c[bodies_of[0]].saturating_sub(c[bodies_of[1]]).saturating_abs();
-        let [rim_a, rim_b] = self.slots.map(|slot| self.proxies.rim(slot, bodies));
-        let fastest = [apart(vx), apart(vy), rim_a, rim_b];
-        let fastest = fastest.iter().fold(0i64, |sum, &speed| sum.saturating_add(speed));
-        let [ga, gb] = bodies_of.map(|body| drive.gain(body, margins.tick));
-        let pressed = [0, 1].map(|axis: usize| ga[axis].saturating_sub(gb[axis]).saturating_abs());
-        let pressed = pressed[0].saturating_add(pressed[1]) / 2;
-        way(fastest.saturating_add(pressed), margins.tick)
-    }
-
-    /// A manifold without those points beyond the margin that the ways of this tick do not bring near.
-    fn of_this_tick(&self, manifold: &Manifold, d: [i64; 2]) -> Option<Manifold> {
-        let See { bodies, margins, .. } = *self;
-        let mut manifold = manifold.clone();
-        if manifold.points[..manifold.count as usize].iter().all(|point| point.separation > margins.base) {
-            return Some(Manifold::default());
-        }
-        let [a, b] = self.slots.map(|slot| self.proxies.get(slot));
-        let apart = |c: &[i64]| c[a.body as usize].saturating_sub(c[b.body as usize]);
-        let (v, omega) = ([apart(bodies.vx.bits()), apart(bodies.vy.bits())], bodies.omega.bits());
-        let n = manifold.normal.map(i64::from);
-        let mut kept = 0;
-        for at in 0..manifold.count as usize {
-            let point = manifold.points[at];
-            if point.separation > margins.base {
-                let arm_b = [point.arm[0].saturating_sub(d[0]), point.arm[1].saturating_sub(d[1])];
-                // Turning brings a point nearer by no more than what its reach is beyond where it is now.
-                let turning = |proxy: &Proxy, arm: [i64; 2], side: i64| {
-                    let speed = mul(omega[proxy.body as usize], cross(arm, n, 30), 32).saturating_mul(side);
-                    let left = proxy.reach.saturating_add(dot(arm, n, 30).saturating_mul(side)).max(0);
-                    way(speed, margins.tick).max(left.saturating_neg())
-                };
-                let turned = turning(a, point.arm, 1).saturating_add(turning(b, arm_b, -1));
-                let nearer = way(dot(v, n, 30), margins.tick).saturating_add(turned);
-                if point.separation.saturating_add(nearer) > margins.base >> 3 {
-                    continue;
-                }
-            }
-            manifold.points[kept] = point;
-            kept = kept.saturating_add(1);
-        }
-        manifold.count = kept as u8;
-        Some(manifold)
     }
 }
 

@@ -6,6 +6,8 @@ mod island;
 mod look;
 mod proxy;
 mod row;
+#[cfg(test)]
+mod tests;
 mod wake;
 mod ways;
 
