@@ -215,18 +215,17 @@ impl Touch {
         found
     }
 
-    /// Has the outlines of a pair whose boxes overlap lie as their bodies do; whether their boxes tell now that it is none.
+    /// Has the outlines of a pair whose boxes overlapped lie as their bodies do; whether their boxes tell now that it is none.
+    /// Those may have become less since then for another pair.
     fn are_apart(&mut self, slots: [usize; 2], bodies: &Bodies, colliders: &Colliders, margins: Margins) -> bool {
-        let mut late = false;
         for slot in slots {
             self.proxies.ask(slot);
             if !self.proxies.get(slot).turned.done {
                 self.proxies.place(slot, bodies, colliders, margins);
-                late = true;
             }
         }
         let boxes = self.proxies.boxes();
-        late && !boxes[slots[0]].overlaps(&boxes[slots[1]])
+        !boxes[slots[0]].overlaps(&boxes[slots[1]])
     }
 
     /// Where a pair is among those of the tick, or [`NEW`], and whether it has rows.

@@ -1,4 +1,5 @@
 //! What is kept from tick to tick has no say.
+#![allow(clippy::disallowed_types, clippy::arithmetic_side_effects, reason = "tests, not the engine")]
 
 use crate::{
     AngularVelocity, BodyDef, BodyKind, ColliderDef, Commands, Friction, Length, Restitution, Shape, Vec2, World,
