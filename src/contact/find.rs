@@ -5,15 +5,16 @@
 
 use super::event::{Event, EventKind};
 use super::island::rests;
+use super::look::{Looks, See};
+use super::proxy::{Proxies, Proxy};
 use super::row::{Contact, Contacts};
-use super::ways::{along, around, common_way, rim_speed, sweep, way};
+use super::ways::{along, common_way};
 use crate::body::{Bodies, Colliders};
 use crate::broad::Broad;
-use crate::geom::{Aabb, Rot, Vec2};
+use crate::geom::{Aabb, Vec2};
 use crate::motion::Drive;
-use crate::narrow::{Manifold, near, overlap};
-use crate::num::{Length, cross, dot, mul};
-use crate::shape::Placed;
+use crate::narrow::Manifold;
+use crate::num::Length;
 use crate::store::{Draft, Kind, Tables};
 
 /// How far ahead contacts are looked for.
@@ -57,14 +58,13 @@ pub(crate) struct Pair {
 crate::store::show!(Pair { colliders, bodies, sensor, manifold, old, row, depth, met, restitution, friction });
 
 impl Pair {
-    pub(crate) fn new(slots: [u32; 2], bodies: [u32; 2], manifold: Manifold, colliders: &Colliders) -> Pair {
-        let [a, b] = slots.map(|slot| colliders.rows.value(slot as usize));
+    fn new(slots: [u32; 2], [a, b]: [&Proxy; 2], manifold: Manifold, old: u32) -> Pair {
         Pair {
             colliders: slots,
-            bodies,
+            bodies: [a.body, b.body],
             sensor: a.sensor || b.sensor,
             manifold,
-            old: NEW,
+            old,
             row: NEW,
             depth: 0,
             met: false,
@@ -74,24 +74,14 @@ impl Pair {
     }
 }
 
-/// What is known of a collider without looking it up.
-#[derive(Clone, Copy, Debug, Default)]
-struct Proxy {
-    body: u32,
-    /// No point is farther from the centre of mass, Q32 m.
-    reach: i64,
-}
-
-/// The pairs of a tick, and what finding them needs. All of it is derived, and none of it lasts but the broad phase.
+/// The pairs of a tick, and what finding them needs. All of it is derived.
 #[derive(Debug, Default)]
 pub(crate) struct Touch {
     broad: Broad,
-    proxies: Vec<Proxy>,
-    /// By collider: its outline in the world's axes, and the box around its way, if `seen` is this tick's number.
-    placed: Vec<Placed>,
-    boxes: Vec<Aabb>,
-    seen: Vec<u64>,
-    now: u64,
+    proxies: Proxies,
+    looks: Looks,
+    /// Which candidates' boxes overlap, and then space.
+    close: Vec<u32>,
     /// Ordered by colliders.
     pub(crate) pairs: Vec<Pair>,
 }
@@ -104,13 +94,10 @@ impl Clone for Touch {
     }
 
     fn clone_from(&mut self, source: &Self) {
-        let Touch { broad, proxies, placed, boxes: _, seen: _, now: _, pairs: _ } = source;
+        let Touch { broad, proxies, looks: _, close: _, pairs: _ } = source;
         self.broad.clone_from(broad);
         self.proxies.clone_from(proxies);
-        // What was placed for a tick is placed anew in the next one.
-        self.make_room(placed.len());
-        self.seen.fill(0);
-        self.now = 0;
+        self.looks.clear();
         self.pairs.clear();
     }
 }
@@ -118,6 +105,7 @@ impl Clone for Touch {
 impl Touch {
     pub(crate) fn clear(&mut self) {
         self.broad.clear();
+        self.looks.clear();
         self.pairs.clear();
     }
 
@@ -126,35 +114,38 @@ impl Touch {
         draft.table(tables, "pairs", Kind::Pair, self.pairs.iter());
     }
 
-    /// Puts a collider where its body is now; after it was created, teleported, or changed its kind or filter.
+    /// Notes a collider and puts it where its body is now; after anything about it was changed but by steps.
     pub(crate) fn set(&mut self, slot: usize, bodies: &Bodies, colliders: &Colliders) {
-        let body = colliders.rows.value(slot).body;
-        let reach = colliders.outline(slot).reach;
-        if self.proxies.len() <= slot {
-            let slots = slot.saturating_add(1);
-            self.proxies.resize(slots, Proxy::default());
-            self.make_room(slots);
-        }
-        self.proxies[slot] = Proxy { body, reach };
-        let at = body as usize;
-        if bodies.is_still(at) {
-            let placed = Placed::new(colliders.outline(slot), Rot::new(bodies.angle.get(at)));
-            self.broad.set_fixed(slot as u32, around(bodies.position(at), placed.min, placed.max));
+        let around = self.proxies.set(slot, bodies, colliders);
+        if self.proxies.get(slot).still {
+            self.broad.set_fixed(slot as u32, around);
         } else {
-            self.broad.set_moving(slot as u32, around(bodies.position(at), [reach.saturating_neg(); 2], [reach; 2]));
+            self.broad.set_moving(slot as u32, around);
         }
         self.broad.touch(slot as u32);
     }
 
-    fn make_room(&mut self, slots: usize) {
-        self.placed.resize_with(slots, Placed::default);
-        self.boxes.resize(slots, Aabb::default());
-        self.seen.resize(slots, 0);
+    /// Whether what is kept from tick to tick follows from bodies and colliders.
+    pub(crate) fn check(&self, bodies: &Bodies, colliders: &Colliders) -> Result<(), &'static str> {
+        if !self.proxies.check(bodies, colliders) {
+            return Err("knows a collider that is another one");
+        }
+        if self.looks.iter().all(|look| look.check(&self.proxies)) {
+            Ok(())
+        } else {
+            Err("has seen a pair that is not so")
+        }
+    }
+
+    /// Of how many pairs all was known in the last tick from an earlier one.
+    #[cfg(test)]
+    pub(super) fn known(&self) -> usize {
+        self.looks.iter().filter(|look| look.tick > 0 && look.tick < self.proxies.now()).count()
     }
 
     /// Adds to `found` the bodies of those colliders for which the broad phase has a fixed box, and which are `elsewhere`.
     pub(crate) fn find_displaced(&self, elsewhere: impl Fn(usize) -> bool, found: &mut Vec<u32>) {
-        let bodies = self.broad.fixed().map(|slot| self.proxies[slot].body);
+        let bodies = self.broad.fixed().map(|slot| self.proxies.get(slot).body);
         found.extend(bodies.filter(|&body| elsewhere(body as usize)));
     }
 
@@ -175,148 +166,66 @@ impl Touch {
         if colliders.rows.live() == 0 {
             return;
         }
+        self.proxies.begin();
+        let proxies = &mut self.proxies;
+        let swept = |slot: u32| proxies.sweep(slot as usize, bodies, colliders, drive, margins);
         let shift = common_way(bodies, margins.tick);
-        let (proxies, boxes) = (&self.proxies, &mut self.boxes);
-        let swept = |slot: u32| {
-            let Proxy { body, reach } = proxies[slot as usize];
-            let out = reach.saturating_add(margins.base);
-            let around = sweep(bodies, drive, body as usize, [out.saturating_neg(); 2], [out; 2], margins.tick);
-            boxes[slot as usize] = around;
-            around
-        };
         self.broad.update(shift, swept, |a, b| wanted(bodies, colliders, a as usize, b as usize));
 
-        self.now = self.now.wrapping_add(1);
         let any_asleep = bodies.rest.any_asleep();
         let mut old = 0;
-        for at in 0..self.broad.candidates().len() {
-            let (a, b) = self.broad.candidates()[at];
-            let body = [self.proxies[a as usize].body, self.proxies[b as usize].body];
-            if any_asleep && rests(bodies, colliders, [a, b], body) {
+        self.looks.begin();
+        for at in 0..self.find_close() {
+            let (a, b) = self.broad.candidates()[self.close[at] as usize];
+            let slots = [a as usize, b as usize];
+            let body = slots.map(|slot| self.proxies.get(slot).body);
+            if any_asleep && rests(bodies, colliders, [a, b], body) || self.are_apart(slots, bodies, colliders, margins)
+            {
                 continue;
             }
-            let still = body.map(|slot| bodies.is_still(slot as usize));
-            // First by what is known of a moving one without turning its outline.
-            if still[0] {
-                self.place(a as usize, true, bodies, colliders, margins);
-            }
-            if still[1] {
-                self.place(b as usize, true, bodies, colliders, margins);
-            }
-            let apart = |boxes: &[Aabb]| !boxes[a as usize].overlaps(&boxes[b as usize]);
-            if apart(&self.boxes) {
-                continue;
-            }
-            self.place(a as usize, still[0], bodies, colliders, margins);
-            self.place(b as usize, still[1], bodies, colliders, margins);
-            if apart(&self.boxes) {
-                continue;
-            }
-            let Some(manifold) = self.meet([a as usize, b as usize], body, bodies, colliders, drive, margins) else {
+            let look = self.looks.next([a, b]);
+            let seen = See { proxies: &self.proxies, slots, bodies, drive, margins };
+            let Some(manifold) = seen.meet(look) else {
                 continue;
             };
+            let proxies = slots.map(|slot| self.proxies.get(slot));
             while old < contacts.len() && contacts.key(old) < (a, b) {
                 old = old.saturating_add(1);
             }
-            let ids = (colliders.id(a as usize), colliders.id(b as usize));
-            let known = old < contacts.len() && contacts.ids(old) == ids;
+            let known = old < contacts.len() && contacts.ids(old) == (proxies[0].id, proxies[1].id);
             let old = if known { old as u32 } else { NEW };
-            self.pairs.push(Pair { old, ..Pair::new([a, b], body, manifold, colliders) });
+            self.pairs.push(Pair::new([a, b], proxies, manifold, old));
         }
+        self.looks.end();
     }
 
-    /// The outline of a collider in this tick, and the box around its way: of a moving one less than the box in which it
-    /// may turn, which the broad phase was given.
-    fn place(&mut self, slot: usize, still: bool, bodies: &Bodies, colliders: &Colliders, margins: Margins) {
-        if self.seen[slot] == self.now {
-            return;
+    /// Of the candidates those whose boxes overlap, as far as they are known. How many.
+    fn find_close(&mut self) -> usize {
+        let candidates = self.broad.candidates();
+        let boxes = self.proxies.boxes();
+        if self.close.len() < candidates.len() {
+            self.close.resize(candidates.len(), 0);
         }
-        self.seen[slot] = self.now;
-        let Proxy { body, reach } = self.proxies[slot];
-        let at = body as usize;
-        let placed = Placed::new(colliders.outline(slot), Rot::new(bodies.angle.get(at)));
-        let around = &mut self.boxes[slot];
-        if still {
-            *around = self::around(bodies.position(at), placed.min, placed.max);
-        } else {
-            // Turning moves no point farther than this, and none out of reach: so this box is within the one that the broad
-            // phase was given, or its history would decide what is found.
-            let rim = way(rim_speed(bodies.omega.get(at).to_bits(), reach), margins.tick);
-            let spare = |out: i64| reach.saturating_sub(out.saturating_add(rim)).max(0);
-            let inward = |at: Length, by: i64| Length::from_bits(at.to_bits().saturating_add(by));
-            let Aabb { min, max } = around;
-            *min = Vec2::new(
-                inward(min.x, spare(placed.min[0].saturating_neg())),
-                inward(min.y, spare(placed.min[1].saturating_neg())),
-            );
-            *max = Vec2::new(
-                inward(max.x, spare(placed.max[0]).saturating_neg()),
-                inward(max.y, spare(placed.max[1]).saturating_neg()),
-            );
+        // Without branches: which of them do cannot be foretold.
+        let mut found = 0usize;
+        for (at, &(a, b)) in (0..).zip(candidates) {
+            self.close[found] = at;
+            found = found.saturating_add(usize::from(boxes[a as usize].overlaps(&boxes[b as usize])));
         }
-        self.placed[slot] = placed;
+        found
     }
 
-    /// The manifold of two colliders whose boxes overlap; one without points for a sensor, and for two that are not near
-    /// but may meet in this tick.
-    fn meet(
-        &self,
-        [a, b]: [usize; 2],
-        [body_a, body_b]: [u32; 2],
-        bodies: &Bodies,
-        colliders: &Colliders,
-        drive: &Drive,
-        margins: Margins,
-    ) -> Option<Manifold> {
-        let (placed_a, placed_b) = (&self.placed[a], &self.placed[b]);
-        let (body_a, body_b) = (body_a as usize, body_b as usize);
-        let between = |c: &[i64]| c[body_b].saturating_sub(c[body_a]);
-        let d = [between(bodies.x.bits()), between(bodies.y.bits())];
-        if colliders.rows.value(a).sensor || colliders.rows.value(b).sensor {
-            return overlap(placed_a, placed_b, d).then(Manifold::default);
-        }
-        let (vx, vy, omega) = (bodies.vx.bits(), bodies.vy.bits(), bodies.omega.bits());
-        let v = [vx[body_a].saturating_sub(vx[body_b]), vy[body_a].saturating_sub(vy[body_b])];
-        let rim = |slot: usize, body: usize| rim_speed(omega[body], self.proxies[slot].reach);
-        let fastest = [v[0].saturating_abs(), v[1].saturating_abs(), rim(a, body_a), rim(b, body_b)];
-        let fastest = fastest.iter().fold(0i64, |sum, &speed| sum.saturating_add(speed));
-        let [ga, gb] = [drive.gain(body_a, margins.tick), drive.gain(body_b, margins.tick)];
-        let pressed = [0, 1].map(|axis: usize| ga[axis].saturating_sub(gb[axis]).saturating_abs());
-        let pressed = pressed[0].saturating_add(pressed[1]) / 2;
-        let ahead = way(fastest.saturating_add(pressed), margins.tick);
-        let mut manifold = near(placed_a, placed_b, d, margins.base.saturating_add(ahead))?;
-        if manifold.count == 0 {
-            // Corner before corner: rows hold no such pair, so what matters is whether it may meet.
-            return near(placed_a, placed_b, d, ahead);
-        }
-        if manifold.points[..manifold.count as usize].iter().all(|point| point.separation > margins.base) {
-            return Some(Manifold::default());
-        }
-
-        // Of the points beyond the margin, those that the ways of this tick bring near.
-        let n = manifold.normal.map(i64::from);
-        let mut kept = 0;
-        for at in 0..manifold.count as usize {
-            let point = manifold.points[at];
-            if point.separation > margins.base {
-                let arm_b = [point.arm[0].saturating_sub(d[0]), point.arm[1].saturating_sub(d[1])];
-                // Turning brings a point nearer by no more than what its reach is beyond where it is now.
-                let turning = |collider: usize, body: usize, arm: [i64; 2], side: i64| {
-                    let speed = mul(omega[body], cross(arm, n, 30), 32).saturating_mul(side);
-                    let left = self.proxies[collider].reach.saturating_add(dot(arm, n, 30).saturating_mul(side)).max(0);
-                    way(speed, margins.tick).max(left.saturating_neg())
-                };
-                let turned = turning(a, body_a, point.arm, 1).saturating_add(turning(b, body_b, arm_b, -1));
-                let nearer = way(dot(v, n, 30), margins.tick).saturating_add(turned);
-                if point.separation.saturating_add(nearer) > margins.base >> 3 {
-                    continue;
-                }
+    /// Has the outlines of a pair whose boxes overlapped lie as their bodies do; whether their boxes tell now that it is none.
+    /// Those may have become less since then for another pair.
+    fn are_apart(&mut self, slots: [usize; 2], bodies: &Bodies, colliders: &Colliders, margins: Margins) -> bool {
+        for slot in slots {
+            self.proxies.ask(slot);
+            if !self.proxies.get(slot).turned.done {
+                self.proxies.place(slot, bodies, colliders, margins);
             }
-            manifold.points[kept] = point;
-            kept = kept.saturating_add(1);
         }
-        manifold.count = kept as u8;
-        Some(manifold)
+        let boxes = self.proxies.boxes();
+        !boxes[slots[0]].overlaps(&boxes[slots[1]])
     }
 
     /// Where a pair is among those of the tick, or [`NEW`], and whether it has rows.
@@ -341,20 +250,21 @@ impl Touch {
     /// A box that is around the free way of a collider in this tick: from where its body was when the tick began, its
     /// velocity (Q48) then, and what that gains.
     pub(crate) fn way(&self, slot: usize, at: [i64; 2], v: [i64; 2], gain: [i64; 2], margins: Margins) -> Aabb {
-        let reach = self.proxies[slot].reach;
+        let reach = self.proxies.get(slot).reach;
         let at = Vec2::new(Length::from_bits(at[0]), Length::from_bits(at[1]));
         along(at, v, gain, [reach.saturating_neg(); 2], [reach; 2], margins.tick)
     }
 
     /// Adds pairs that impacts brought together, though their own ways would not have.
-    pub(crate) fn join(&mut self, late: &mut Vec<[[u32; 2]; 2]>, colliders: &Colliders, contacts: &Contacts) {
+    pub(crate) fn join(&mut self, late: &mut Vec<[[u32; 2]; 2]>, contacts: &Contacts) {
         if late.is_empty() {
             return;
         }
-        for [pair, bodies] in late.drain(..) {
-            let ids = pair.map(|slot| colliders.id(slot as usize));
-            let old = (0..contacts.len()).find(|&at| contacts.ids(at) == (ids[0], ids[1])).map_or(NEW, |at| at as u32);
-            self.pairs.push(Pair { old, met: true, ..Pair::new(pair, bodies, Manifold::default(), colliders) });
+        for [pair, _] in late.drain(..) {
+            let proxies = pair.map(|slot| self.proxies.get(slot as usize));
+            let ids = (proxies[0].id, proxies[1].id);
+            let old = (0..contacts.len()).find(|&at| contacts.ids(at) == ids).map_or(NEW, |at| at as u32);
+            self.pairs.push(Pair { met: true, ..Pair::new(pair, proxies, Manifold::default(), old) });
         }
         self.pairs.sort_unstable_by_key(|pair| pair.colliders);
     }

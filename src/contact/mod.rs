@@ -3,7 +3,11 @@
 mod event;
 mod find;
 mod island;
+mod look;
+mod proxy;
 mod row;
+#[cfg(test)]
+mod tests;
 mod wake;
 mod ways;
 

@@ -13,10 +13,13 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// Whether the two have a point in common.
+    /// Whether the two have a point in common. Without branches: which comparison fails cannot be foretold.
     #[inline]
     pub fn overlaps(&self, other: &Aabb) -> bool {
-        self.min.x <= other.max.x && other.min.x <= self.max.x && self.min.y <= other.max.y && other.min.y <= self.max.y
+        (self.min.x <= other.max.x)
+            & (other.min.x <= self.max.x)
+            & (self.min.y <= other.max.y)
+            & (other.min.y <= self.max.y)
     }
 
     /// Whether all of `other` lies inside.

@@ -15,6 +15,14 @@ fn point(normal: [i32; 2], center: [i64; 2], radius: i64, separation: i64) -> Po
     Point { arm, separation, id: 0 }
 }
 
+/// A circle's contact as its owner sees it.
+pub(super) struct Contact {
+    pub(super) normal: [i32; 2],
+    pub(super) point: Point,
+    /// It is one with limits from this one on.
+    pub(super) from: i64,
+}
+
 /// Where a point outside a polygon has its nearest feature.
 pub(super) enum Region {
     /// The edge from this vertex on.
@@ -57,10 +65,10 @@ pub(super) fn region(polygon: &Placed, p: [i64; 2], start: usize) -> Region {
 }
 
 /// `polygon` and the circle `other`, whose body's centre is `shift` from the polygon's: the normal from the polygon to
-/// the circle and the point from the polygon's centre.
+/// the circle and the point from the polygon's centre; or how far they are apart at least, which is more than the limit.
 ///
 /// A centre inside or on the polygon has the normal of the face it is least inside of (ties: lower index).
-pub(super) fn from_polygon(polygon: &Placed, other: &Placed, shift: [i64; 2], limit: i64) -> Option<([i32; 2], Point)> {
+pub(super) fn from_polygon(polygon: &Placed, other: &Placed, shift: [i64; 2], limit: i64) -> Result<Contact, i64> {
     let radius = other.radius;
     let reach = limit.wrapping_add(radius);
     let center = sum(other.vertices[0], shift);
@@ -69,7 +77,7 @@ pub(super) fn from_polygon(polygon: &Placed, other: &Placed, shift: [i64; 2], li
     for edge in 0..usize::from(polygon.count) {
         let distance = outside(edge);
         if distance > reach {
-            return None;
+            return Err(distance.wrapping_sub(radius));
         }
         if distance > greatest {
             (face, greatest) = (edge, distance);
@@ -80,27 +88,38 @@ pub(super) fn from_polygon(polygon: &Placed, other: &Placed, shift: [i64; 2], li
     } else {
         match region(polygon, center, face) {
             Region::Edge(edge) => (polygon.normals[edge], outside(edge)),
-            Region::Vertex(vertex) => unit(difference(center, polygon.vertices[vertex]))?,
+            Region::Vertex(vertex) => unit(difference(center, polygon.vertices[vertex])).ok_or(i64::MAX)?,
         }
     };
-    (distance <= reach).then(|| (normal, point(normal, center, radius, distance.wrapping_sub(radius))))
+    let separation = distance.wrapping_sub(radius);
+    if distance > reach {
+        return Err(separation);
+    }
+    let from = greatest.max(distance).wrapping_sub(radius);
+    Ok(Contact { normal, point: point(normal, center, radius, separation), from })
 }
 
-/// Two circles: the normal from a to b and the point from a's centre. Where the centres coincide, no direction is better
-/// than another: the normal is (0, −1), from b to a (0, 1); it is the one case that half a turn does not negate.
-pub(super) fn from_circle(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Option<([i32; 2], Point)> {
+/// Two circles: the normal from a to b and the point from a's centre; or how far they are apart at least, which is more
+/// than the limit. Where the centres coincide, no direction is better than another: the normal is (0, −1), from b to a
+/// (0, 1); it is the one case that half a turn does not negate.
+pub(super) fn from_circle(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Result<Contact, i64> {
     let (from, to) = (a.vertices[0], sum(b.vertices[0], d));
     let centers = difference(to, from);
     let radii = a.radius.wrapping_add(b.radius);
     // Beyond this the length needs no root: |c| > r by more than rounding.
-    let reach = radii.wrapping_add(limit).wrapping_add(1);
-    if !at_most(centers, reach) {
-        return None;
+    let within = |limit: i64| at_most(centers, radii.wrapping_add(limit).wrapping_add(1));
+    if !within(limit) {
+        return Err(limit.wrapping_add(1));
     }
     let (normal, distance) = unit(centers).unwrap_or(([0, -(1 << 30)], 0));
     let separation = distance.wrapping_sub(radii);
+    if separation > limit {
+        return Err(separation);
+    }
     // Half-way between from + n·r and to − n·r.
     let both = sum(from, to).map(|c| c.wrapping_add(c.signum()) / 2);
     let arm = sum(both, normal.map(|n| mul(n.into(), a.radius.wrapping_sub(b.radius), 31)));
-    (separation <= limit).then_some((normal, Point { arm, separation, id: 0 }))
+    // Of circles kilometres apart the length is rounded by more than a unit.
+    let from = if within(separation) { separation } else { limit };
+    Ok(Contact { normal, point: Point { arm, separation, id: 0 }, from })
 }

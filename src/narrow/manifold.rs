@@ -42,42 +42,79 @@ pub(crate) struct Manifold {
 
 crate::store::show!(Manifold { normal, count, points });
 
+/// What is near of two outlines, and for which limits that is so.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Near {
+    /// Whether an axis separates them by more than the limit. Two polygons that are nearer may still have no points, a
+    /// corner of one before a corner of the other.
+    pub(crate) apart: bool,
+    /// The points whose separation is at most the limit.
+    pub(crate) manifold: Manifold,
+    /// With limits from this one on and below that one all of it is the same, Q32 m.
+    pub(crate) from: i64,
+    pub(crate) below: i64,
+}
+
+impl Near {
+    /// Nothing: something separates them by so much.
+    pub(super) fn apart(by: i64) -> Near {
+        Near { apart: true, manifold: Manifold::default(), from: i64::MIN, below: by }
+    }
+
+    /// What it is with a limit, if that is known.
+    #[inline]
+    pub(crate) fn holds(&self, limit: i64) -> bool {
+        self.from <= limit && limit < self.below
+    }
+}
+
 /// The manifold of two outlines, b's centre being `d` from a's (Q32 m), with the points whose separation is at most
 /// `limit` (Q32 m, not negative). Outlines that overlap have at least one point.
 ///
 /// Range: |d| < 2⁵⁰, vertices below 2⁴⁸: differences stay below 2⁵², their products with Q30 normals below 2⁸⁴.
 pub(crate) fn collide(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Manifold {
-    near(a, b, d, limit).unwrap_or_default()
+    near(a, b, d, limit).manifold
 }
 
-/// The same; none where an axis separates them by more than the limit. Two polygons that are nearer may still have no
-/// points, a corner of one before a corner of the other.
-pub(crate) fn near(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Option<Manifold> {
+/// The same, and which limits would give it as well.
+pub(crate) fn near(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Near {
     if a.count <= 1 && b.count <= 1 {
-        return circle::from_circle(a, b, d, limit).map(|contact| single(contact, true, d));
+        return match circle::from_circle(a, b, d, limit) {
+            Ok(contact) => single(contact, true, d, i64::MIN),
+            Err(by) => Near::apart(by),
+        };
     }
     // Boxes apart: most pairs of a broad phase with margins end here.
-    let apart = |axis: usize| {
-        b.min[axis].wrapping_add(d[axis]).wrapping_sub(a.max[axis]) > limit
-            || a.min[axis].wrapping_sub(d[axis]).wrapping_sub(b.max[axis]) > limit
+    let between = |axis: usize| {
+        let above = b.min[axis].wrapping_add(d[axis]).wrapping_sub(a.max[axis]);
+        let below = a.min[axis].wrapping_sub(d[axis]).wrapping_sub(b.max[axis]);
+        above.max(below)
     };
-    if apart(0) || apart(1) {
-        return None;
+    let boxes = between(0).max(between(1));
+    if boxes > limit {
+        return Near::apart(boxes);
     }
-    if b.count <= 1 {
-        circle::from_polygon(a, b, d, limit).map(|contact| single(contact, true, d))
+    let contact = if b.count <= 1 {
+        circle::from_polygon(a, b, d, limit)
     } else if a.count <= 1 {
-        circle::from_polygon(b, a, d.map(i64::wrapping_neg), limit).map(|contact| single(contact, false, d))
+        circle::from_polygon(b, a, d.map(i64::wrapping_neg), limit)
     } else {
-        polygon::near(a, b, d, limit)
+        return polygon::near(a, b, d, limit, boxes);
+    };
+    match contact {
+        Ok(contact) => single(contact, b.count <= 1, d, boxes),
+        Err(by) => Near::apart(by),
     }
 }
 
-/// A contact with a circle as its owner saw it: `normal` away from the owner, the point from the owner's centre.
-fn single((normal, mut point): ([i32; 2], Point), a_owns: bool, d: [i64; 2]) -> Manifold {
+/// A contact with a circle as its owner saw it: `normal` away from the owner, the point from the owner's centre. There is
+/// one with limits from the greater of two on.
+fn single(contact: circle::Contact, a_owns: bool, d: [i64; 2], boxes: i64) -> Near {
+    let circle::Contact { normal, mut point, from } = contact;
     let normal = if a_owns { normal.map(i32::wrapping_neg) } else { normal };
     if !a_owns {
         point.arm = super::sum(point.arm, d);
     }
-    Manifold { normal, count: 1, points: [point, Point::default()] }
+    let manifold = Manifold { normal, count: 1, points: [point, Point::default()] };
+    Near { apart: false, manifold, from: boxes.max(from), below: i64::MAX }
 }

@@ -25,7 +25,7 @@ mod tests;
 mod unit;
 
 pub(crate) use clearance::Clearance;
-pub(crate) use manifold::{Manifold, Point, collide, near};
+pub(crate) use manifold::{Manifold, Near, Point, collide, near};
 pub(crate) use meeting::{Motion, first_touch};
 pub(crate) use overlap::overlap;
 pub(crate) use query::{Hit, closest, contains, ray};

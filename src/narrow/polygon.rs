@@ -5,7 +5,7 @@
 
 use core::cmp::Ordering;
 
-use super::manifold::{Manifold, Point};
+use super::manifold::{Manifold, Near, Point};
 use super::{along, difference, next, previous, rounded, sum};
 use crate::num::{clamp_i64, div, mul};
 use crate::shape::Placed;
@@ -50,12 +50,12 @@ impl View<'_> {
         (nearest, rounded(height.wrapping_add(base)))
     }
 
-    /// The face of greatest separation (ties: lower index); none if that is more than `limit`.
+    /// The face of greatest separation (ties: lower index); if that is more than `limit`, a separation that is.
     ///
     /// A point in the other polygon is no farther out than its nearest vertex, so the middle of a diagonal bounds the
     /// separation from an edge: few edges need a look at all vertices. The choice is that of looking at all of them.
     #[inline]
-    fn greatest(&self, limit: i64) -> Option<Face> {
+    fn greatest(&self, limit: i64) -> Result<Face, i64> {
         let half = usize::from(self.other.count / 2);
         let middle = sum(self.other.vertices[0], self.other.vertices[half]).map(|c| c >> 1);
         let middle = sum(middle, self.shift);
@@ -69,7 +69,7 @@ impl View<'_> {
         let (nearest, separation) = self.separation(outermost);
         let mut best = Face { edge: outermost, nearest, separation };
         if separation > limit {
-            return None;
+            return Err(separation);
         }
         for (edge, &bound) in bounds[..count].iter().enumerate() {
             // Two units for the rounding of the middle and of both numbers.
@@ -78,13 +78,13 @@ impl View<'_> {
             }
             let (nearest, separation) = self.separation(edge);
             if separation > limit {
-                return None;
+                return Err(separation);
             }
             if separation > best.separation || separation == best.separation && edge < best.edge {
                 best = Face { edge, nearest, separation };
             }
         }
-        Some(best)
+        Ok(best)
     }
 
     /// Clips the edge that faces `edge` to it; `alone`: takes its nearest vertex instead, over the edge or not.
@@ -184,21 +184,36 @@ pub(super) fn between(a: i64, b: i64, part: i64, whole: i64) -> i64 {
     a.wrapping_add(share)
 }
 
-pub(super) fn near(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Option<Manifold> {
+/// `boxes`: how far apart their boxes are, which is no more than the limit.
+pub(super) fn near(a: &Placed, b: &Placed, d: [i64; 2], limit: i64, boxes: i64) -> Near {
     let views = [View { own: a, other: b, shift: d }, View { own: b, other: a, shift: d.map(i64::wrapping_neg) }];
-    let of_a = views[0].greatest(limit)?;
-    let of_b = views[1].greatest(limit)?;
+    let faces = views[0].greatest(limit).and_then(|of_a| Ok([of_a, views[1].greatest(limit)?]));
+    let [of_a, of_b] = match faces {
+        Ok(faces) => faces,
+        Err(by) => return Near::apart(by),
+    };
     // In a tie a's.
     let owner = usize::from(of_b.separation > of_a.separation);
     let face = if owner == 0 { of_a } else { of_b };
     let clip = views[owner].clip(face, false);
-    let manifold = manifold(&views, owner, face.edge, &clip, d, limit);
-    Some(if manifold.count > 0 { manifold } else { otherwise(&views, owner, face, clip.found, d, limit) })
+    let mut near = Near { apart: false, from: boxes.max(face.separation), below: i64::MAX, ..Near::default() };
+    near.manifold = manifold(&views, owner, face.edge, &clip, d, (limit, &mut near));
+    if near.manifold.count == 0 {
+        near.manifold = otherwise(&views, owner, face, clip.found, d, (limit, &mut near));
+    }
+    near
 }
 
-/// The points of a clip that are within the limit.
+/// The points of a clip that are within the limit; which limits would take the same of them is noted.
 #[inline(always)]
-fn manifold(views: &[View<'_>; 2], owner: usize, edge: usize, clip: &Clip, d: [i64; 2], limit: i64) -> Manifold {
+fn manifold(
+    views: &[View<'_>; 2],
+    owner: usize,
+    edge: usize,
+    clip: &Clip,
+    d: [i64; 2],
+    (limit, near): (i64, &mut Near),
+) -> Manifold {
     let edges = if owner == 0 { [edge, clip.incident] } else { [clip.incident, edge] };
     let pair = edges[0] << 4 | edges[1] << 1;
     let d = if owner == 0 { [0; 2] } else { d };
@@ -207,7 +222,15 @@ fn manifold(views: &[View<'_>; 2], owner: usize, edge: usize, clip: &Clip, d: [i
         let End { arm, separation } = clip.ends[bit ^ owner];
         Point { arm: sum(arm, d), separation, id: (pair | bit) as u8 }
     };
-    let found = |bit: usize| clip.found[bit ^ owner] && clip.ends[bit ^ owner].separation <= limit;
+    let mut found = |bit: usize| {
+        let separation = clip.ends[bit ^ owner].separation;
+        if clip.found[bit ^ owner] && separation <= limit {
+            near.from = near.from.max(separation);
+        } else if clip.found[bit ^ owner] {
+            near.below = near.below.min(separation);
+        }
+        clip.found[bit ^ owner] && separation <= limit
+    };
     let (count, points) = match (found(0), found(1)) {
         (true, true) => (2, [point(0), point(1)]),
         (true, false) => (1, [point(0), Point::default()]),
@@ -226,7 +249,14 @@ fn manifold(views: &[View<'_>; 2], owner: usize, edge: usize, clip: &Clip, d: [i
 /// may lie over the next.
 #[cold]
 #[inline(never)]
-fn otherwise(views: &[View<'_>; 2], owner: usize, face: Face, found: [bool; 2], d: [i64; 2], limit: i64) -> Manifold {
+fn otherwise(
+    views: &[View<'_>; 2],
+    owner: usize,
+    face: Face,
+    found: [bool; 2],
+    d: [i64; 2],
+    (limit, near): (i64, &mut Near),
+) -> Manifold {
     let extent = |p: &Placed| (0..2).map(|axis| p.max[axis].wrapping_sub(p.min[axis])).max().unwrap_or(0);
     // A unit of 2⁻³⁰ for each of two normals and as much for the rounding of vertices, along either outline.
     let tolerance = (extent(views[0].own).max(extent(views[1].own)) >> 28).wrapping_add(4);
@@ -235,7 +265,7 @@ fn otherwise(views: &[View<'_>; 2], owner: usize, face: Face, found: [bool; 2], 
         let (nearest, separation) = views[owner].separation(edge);
         if found == [false; 2] && separation >= face.separation.wrapping_sub(tolerance) {
             let clip = views[owner].clip(Face { edge, nearest, separation }, false);
-            let beside = manifold(views, owner, edge, &clip, d, limit);
+            let beside = manifold(views, owner, edge, &clip, d, (limit, near));
             if beside.count > 0 {
                 return beside;
             }
@@ -244,5 +274,5 @@ fn otherwise(views: &[View<'_>; 2], owner: usize, face: Face, found: [bool; 2], 
     if face.separation > 0 {
         return Manifold::default();
     }
-    manifold(views, owner, face.edge, &views[owner].clip(face, true), d, limit)
+    manifold(views, owner, face.edge, &views[owner].clip(face, true), d, (limit, near))
 }

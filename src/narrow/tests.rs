@@ -4,6 +4,7 @@
 mod exact;
 mod hard;
 mod identity;
+mod limits;
 mod meeting;
 mod oracle;
 mod queries;

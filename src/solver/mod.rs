@@ -312,7 +312,7 @@ impl Solver {
         for &pair in &timeline.met {
             touch.pairs[pair as usize].met = true;
         }
-        touch.join(&mut timeline.late, colliders, contacts);
+        touch.join(&mut timeline.late, contacts);
     }
 
     /// The slots of bodies that contacts moved in this tick by more than a speed (Q48 m/s) would: where overlaps are pushed

@@ -99,6 +99,7 @@ impl World {
                 let slot = self.collider_slot(collider)?;
                 let (restitution, friction) = (restitution.checked()?, friction.checked()?);
                 self.colliders.rows.update(slot, |row| (row.restitution, row.friction) = (restitution, friction));
+                self.touch.set(slot, &self.bodies, &self.colliders);
             }
             Command::SetFilter { collider, filter } => {
                 let slot = self.collider_slot(collider)?;

@@ -13,13 +13,14 @@ impl World {
     ///
     /// Errors: the first broken invariant, in words.
     pub fn check(&self) -> Result<(), String> {
-        let World { config, bodies, colliders, attractors, pushes, contacts, resting, drive, solver, faults, .. } =
-            self;
+        let World { config, bodies, colliders, attractors, pushes, contacts, resting, .. } = self;
+        let World { drive, touch, solver, faults, .. } = self;
         self.check_lists()?;
         bodies.check().map_err(|reason| format!("the table of bodies {reason}"))?;
         colliders.check().map_err(|reason| format!("the table of colliders {reason}"))?;
         attractors.check().map_err(|reason| format!("the table of attractors {reason}"))?;
         resting.check(contacts, bodies, colliders).map_err(|reason| format!("the list of what sleeps {reason}"))?;
+        touch.check(bodies, colliders).map_err(|reason| format!("the broad phase {reason}"))?;
         if !faults.is_empty() {
             return Err("faults of the last step were left over".into());
         }

@@ -1,0 +1,35 @@
+//! For which limits what is near is the same.
+
+use super::super::near;
+use super::*;
+
+/// Outlines that touch, nearly do, or stand corner before corner.
+#[test]
+fn what_is_near_is_the_same_from_one_limit_to_the_other() {
+    let mut noise = Noise(11);
+    let (mut without, mut partly, mut apart) = (0, 0, 0);
+    for _ in 0..100_000 {
+        let radius = noise.within(M / 8, 2 * M);
+        let (a, b) = (noise.outline(radius), noise.outline(radius));
+        let away = noise.within(radius / 2, 3 * radius);
+        let d = noise.around(away);
+        let limit = noise.within(0, M / 2);
+        let seen = near(&a, &b, d, limit);
+        assert!(seen.holds(limit), "{seen:?} {limit}");
+        let (low, high) = (seen.from.max(0), seen.below.min(M) - 1);
+        for other in [low, high.max(low), noise.within(low, high.max(low)), noise.within(0, M)] {
+            let again = near(&a, &b, d, other);
+            if seen.holds(other) {
+                assert_eq!((seen.apart, &seen.manifold), (again.apart, &again.manifold), "{limit} {other}");
+            }
+            if !seen.apart && seen.manifold.count == 0 && other <= limit {
+                assert_eq!(again.apart, other < seen.from, "{limit} {other}");
+                assert_eq!(again.manifold.count, 0);
+            }
+        }
+        without += usize::from(!seen.apart && seen.manifold.count == 0);
+        partly += usize::from(!seen.apart && seen.below < i64::MAX);
+        apart += usize::from(seen.apart);
+    }
+    assert!(without > 500 && partly > 500 && apart > 500, "{without} {partly} {apart}");
+}
