@@ -72,6 +72,12 @@ impl Pair {
             friction: a.friction.combine(b.friction).to_bits(),
         }
     }
+
+    /// What the last tick left of it.
+    #[inline(always)]
+    pub(crate) fn last(&self, contacts: &Contacts) -> Contact {
+        if self.old == NEW { Contact::default() } else { contacts.get(self.old as usize) }
+    }
 }
 
 /// The pairs of a tick, and what finding them needs. All of it is derived.

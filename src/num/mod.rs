@@ -43,6 +43,7 @@
 mod angle;
 pub mod decimal;
 pub(crate) mod envelope;
+pub(crate) mod flat;
 mod float;
 pub(crate) mod lane;
 mod quantity;

@@ -7,6 +7,7 @@
 use core::arch::x86_64::*;
 
 use super::mover::Mover;
+use super::prepare::Joints;
 use super::rows::{Block, LANES, Lane};
 use super::scales::Scales;
 use super::sweep;
@@ -67,6 +68,17 @@ impl Avx2 {
         }
         // SAFETY: `self` says that the processor has AVX2.
         unsafe { with_avx2::<BIASED>(self, block, lanes, movers, scales) }
+    }
+
+    /// The rows of eight contacts, see [`Joints::write`].
+    #[inline]
+    pub(super) fn prepare(self, joints: &Joints, block: &mut Block, shift: u32) -> u8 {
+        #[target_feature(enable = "avx2")]
+        unsafe fn with_avx2(joints: &Joints, block: &mut Block, shift: u32) -> u8 {
+            joints.write(block, shift)
+        }
+        // SAFETY: `self` says that the processor has AVX2.
+        unsafe { with_avx2(joints, block, shift) }
     }
 
     /// Last tick's impulses, see [`sweep::warm_start`].

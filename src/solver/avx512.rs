@@ -8,6 +8,7 @@
 use core::arch::x86_64::*;
 
 use super::mover::Mover;
+use super::prepare::Joints;
 use super::rows::{Block, LANES, Lane};
 use super::scales::Scales;
 use super::sweep;
@@ -45,7 +46,9 @@ macro_rules! vector {
 impl Avx512 {
     /// If the processor has it.
     pub(crate) fn detect() -> Option<Avx512> {
-        let has = std::arch::is_x86_feature_detected!("avx512f") && std::arch::is_x86_feature_detected!("avx512vl");
+        let has = std::arch::is_x86_feature_detected!("avx512f")
+            && std::arch::is_x86_feature_detected!("avx512vl")
+            && std::arch::is_x86_feature_detected!("avx512dq");
         has.then_some(Avx512(()))
     }
 
@@ -70,6 +73,17 @@ impl Avx512 {
         }
         // SAFETY: `self` says that the processor has AVX-512.
         unsafe { with_avx512::<BIASED>(self, block, lanes, movers, scales) }
+    }
+
+    /// The rows of eight contacts, see [`Joints::write`].
+    #[inline]
+    pub(super) fn prepare(self, joints: &Joints, block: &mut Block, shift: u32) -> u8 {
+        #[target_feature(enable = "avx512f,avx512vl,avx512dq")]
+        unsafe fn with_avx512(joints: &Joints, block: &mut Block, shift: u32) -> u8 {
+            joints.write(block, shift)
+        }
+        // SAFETY: `self` says that the processor has AVX-512.
+        unsafe { with_avx512(joints, block, shift) }
     }
 
     /// Last tick's impulses, see [`sweep::warm_start`].

@@ -14,6 +14,9 @@ pub(crate) const REST: usize = COLORS as usize;
 /// Contacts that are solved directly: no sweep comes by.
 const APART: usize = REST + 1;
 
+/// No contact.
+pub(crate) const VACANT: u32 = u32::MAX;
+
 /// Where each contact goes: block and lane.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Colors {
@@ -23,6 +26,8 @@ pub(crate) struct Colors {
     color: Vec<u8>,
     /// By contact: 8·block + lane.
     pub(crate) seats: Vec<u32>,
+    /// By seat: the contact, or [`VACANT`].
+    pub(crate) sitting: Vec<u32>,
     /// How many blocks there are, and how many of them, from the first on, are swept.
     pub(crate) blocks: usize,
     pub(crate) swept: usize,
@@ -36,11 +41,13 @@ impl Colors {
         self.used.clear();
         self.used.resize(free.len(), 0);
         self.color.clear();
-        let mut counts = [0usize; APART + 1];
-        for (at, &[a, b]) in places.iter().enumerate() {
+        // By colour, of those that are not heavy, and of those that are.
+        let mut counts = [[0usize; 2]; APART + 1];
+        for (at, (&[a, b], &heavy)) in places.iter().zip(heavy).enumerate() {
+            let heavy = usize::from(heavy);
             if apart.get(at).is_some_and(|&apart| apart) {
                 self.color.push(APART as u8);
-                counts[APART] = next(counts[APART]);
+                counts[APART][heavy] = next(counts[APART][heavy]);
                 continue;
             }
             let (a_free, b_free) = (free[a as usize], free[b as usize]);
@@ -56,27 +63,28 @@ impl Colors {
                 }
             }
             self.color.push(color as u8);
-            counts[color] = next(counts[color]);
+            counts[color][heavy] = next(counts[color][heavy]);
         }
-        // The first seat of each colour; every colour begins with a new block, the rest have one each.
-        let mut seats = [0u32; APART + 1];
+        // The first seats of each colour; every colour begins with a new block, the rest have one each.
+        let mut seats = [[0u32; 2]; APART + 1];
         let mut blocks = 0usize;
         for color in 0..=APART {
             self.swept = if color == APART { blocks } else { self.swept };
-            seats[color] = (blocks as u32).saturating_mul(8);
-            let size = if color == REST { counts[color] } else { counts[color].div_ceil(8) };
-            blocks = blocks.saturating_add(size);
+            let [light, heavy] = counts[color];
+            let (size, width) = (light.saturating_add(heavy), if color == REST { 1 } else { LANES });
+            let first = blocks.saturating_mul(LANES);
+            seats[color] = [first.saturating_add(heavy.saturating_mul(LANES / width)), first].map(|seat| seat as u32);
+            blocks = blocks.saturating_add(size.div_ceil(width));
         }
         self.blocks = blocks;
+        self.sitting.clear();
+        self.sitting.resize(blocks.saturating_mul(LANES), VACANT);
         self.seats.clear();
-        self.seats.resize(places.len(), 0);
-        for first in [true, false] {
-            let rows = self.seats.iter_mut().zip(&self.color).zip(heavy);
-            for ((seat, &color), _) in rows.filter(|&(_, &heavy)| heavy == first) {
-                let color = color as usize;
-                *seat = seats[color];
-                seats[color] = seats[color].saturating_add(if color == REST { 8 } else { 1 });
-            }
+        for (row, (&color, &heavy)) in self.color.iter().zip(heavy).enumerate() {
+            let next = &mut seats[color as usize][usize::from(heavy)];
+            self.seats.push(*next);
+            self.sitting[*next as usize] = row as u32;
+            *next = next.saturating_add(if color as usize == REST { LANES as u32 } else { 1 });
         }
     }
 

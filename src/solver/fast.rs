@@ -7,17 +7,30 @@ use crate::contact::Pair;
 use crate::motion::Drive;
 use crate::num::{cross, dot, mul};
 
-/// No less than the speed at which the points of a pair come together, with what forces add: directions left out, for
-/// pairs that are clearly slower than what strikes.
-fn fastest(pair: &Pair, between: [i64; 2], v: [i64; 2], omega: [i64; 2], gain: [[i64; 2]; 2]) -> i64 {
-    let add = |sum: i64, c: i64| sum.saturating_add(c.saturating_abs());
-    let length = |v: [i64; 2]| add(add(1, v[0]), v[1]);
-    let [first, second] = pair.manifold.points.map(|point| length(point.arm));
-    let arm = first.max(second);
-    let arms = [arm, add(arm, length(between))];
-    let turning = [0, 1].map(|body: usize| mul(omega[body].saturating_abs(), arms[body], 32));
-    // 16 for the roundings of both.
-    turning.into_iter().chain(v).chain(gain.into_iter().flatten()).fold(16, add)
+/// No less than the speed at which the points of a pair come together, with what forces add, Q40 m/s: directions left out,
+/// for pairs that are clearly slower than what strikes.
+#[inline(always)]
+fn fastest(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scales) -> u64 {
+    let [a, b] = pair.bodies.map(|slot| slot as usize);
+    // Magnitudes over 2^SHIFT, rounded up, so that their sums fit: of 2⁶³ at most.
+    const fn over<const SHIFT: u32>(magnitude: u64) -> u64 {
+        (magnitude >> SHIFT).saturating_add(1)
+    }
+    let apart = |c: &[i64]| over::<8>(c[a].abs_diff(c[b]));
+    let gain = |[x, y]: [i64; 2]| over::<8>(x.unsigned_abs()).saturating_add(over::<8>(y.unsigned_abs()));
+    // Arms in Q16, turning in Q24.
+    let length = |[x, y]: [i64; 2]| over::<16>(x.unsigned_abs()).saturating_add(over::<16>(y.unsigned_abs()));
+    let [first, second] = &pair.manifold.points;
+    let arm = length(first.arm).max(length(second.arm));
+    let between = |c: &[i64]| over::<16>(c[a].abs_diff(c[b]));
+    let (x, y) = (between(bodies.x.bits()), between(bodies.y.bits()));
+    let turning = |slot: usize, arm: u64| over::<24>(bodies.omega.bits()[slot].unsigned_abs()).saturating_mul(arm);
+    apart(bodies.vx.bits())
+        .saturating_add(apart(bodies.vy.bits()))
+        .saturating_add(gain(drive.gain(a, scales.margins.tick)))
+        .saturating_add(gain(drive.gain(b, scales.margins.tick)))
+        .saturating_add(turning(a, arm))
+        .saturating_add(turning(b, arm.saturating_add(x).saturating_add(y)))
 }
 
 /// Whether a near pair turns so fast, and nothing presses it together, that another corner may swing in across the gap, of
@@ -34,7 +47,18 @@ pub(super) fn swings(pair: &Pair, bodies: &Bodies, drive: &Drive, mobilities: &[
 }
 
 /// Whether a near pair comes together so fast that it strikes.
+#[inline(always)]
 pub(super) fn strikes(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scales, among: bool) -> bool {
+    // Without restitution the threshold is the same whatever presses.
+    let least = scales.threshold(0, 0, among).unsigned_abs() >> 8;
+    let slow = pair.restitution == 0 && fastest(pair, bodies, drive, scales) <= least;
+    debug_assert!(!slow || !comes_fast(pair, bodies, drive, scales, among), "a bound of the speed is below it");
+    !slow && comes_fast(pair, bodies, drive, scales, among)
+}
+
+/// The same by the directions and arms of its points.
+#[inline(never)]
+fn comes_fast(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scales, among: bool) -> bool {
     let [a, b] = pair.bodies.map(|slot| slot as usize);
     let (va, vb) = (bodies.velocity(a), bodies.velocity(b));
     let v = [va.x.to_bits().saturating_sub(vb.x.to_bits()), va.y.to_bits().saturating_sub(vb.y.to_bits())];
@@ -42,23 +66,6 @@ pub(super) fn strikes(pair: &Pair, bodies: &Bodies, drive: &Drive, scales: &Scal
     let gain = [a, b].map(|at| drive.gain(at, scales.margins.tick));
     let between = |c: &[i64]| c[b].saturating_sub(c[a]);
     let between = [between(bodies.x.bits()), between(bodies.y.bits())];
-    // Without restitution the threshold is the same whatever presses.
-    let slow = pair.restitution == 0 && fastest(pair, between, v, omega, gain) <= scales.threshold(0, 0, among);
-    let strikes = || comes_fast(pair, between, v, omega, gain, scales, among);
-    debug_assert!(!slow || !strikes(), "a bound of the speed is below it");
-    !slow && strikes()
-}
-
-/// The same by the directions and arms of its points.
-fn comes_fast(
-    pair: &Pair,
-    between: [i64; 2],
-    v: [i64; 2],
-    omega: [i64; 2],
-    gain: [[i64; 2]; 2],
-    scales: &Scales,
-    among: bool,
-) -> bool {
     let n = pair.manifold.normal.map(i64::from);
     let press = gain.map(|gain| dot(gain, n, 30));
     let mut closest = i64::MAX;

@@ -161,9 +161,15 @@ fn order(members: &mut [u32], places: &[[u32; 2]], free: &[bool], level: &mut [u
     members.last().map_or(1, |&at| levels(at)[0].max(levels(at)[1]))
 }
 
+/// Whether a pair bears so much, or overlaps so deep, that its island may be hard.
+#[inline]
+pub(super) fn hard(overlap: i64, old: &Contact, scales: &Scales) -> bool {
+    Scales::is_hard(old.normal, old.mode > 0) || overlap > scales.deep
+}
+
 /// What a pair says about how its island is to be solved. What a kinematic body presses while it moves may have no solution.
 pub(super) fn vote(pair: &Pair, old: &Contact, bodies: &Bodies, mobilities: &[Mobility], scales: &Scales) -> Vote {
-    let hard = Scales::is_hard(old.normal, old.mode > 0) || overlap(pair) > scales.deep;
+    let hard = hard(overlap(pair), old, scales);
     let presses = |&slot: &u32| {
         let (at, mobility) = (slot as usize, &mobilities[slot as usize]);
         let v = bodies.velocity(at);

@@ -5,6 +5,7 @@ use super::avx2::Avx2;
 #[cfg(all(target_arch = "x86_64", avx512))]
 use super::avx512::Avx512;
 use super::mover::Mover;
+use super::prepare::Joints;
 use super::rows::Block;
 use super::scales::Scales;
 
@@ -65,6 +66,17 @@ impl Kernel {
             Kernel::Avx2(avx2) => avx2.warm_start(block, movers),
             #[cfg(all(target_arch = "x86_64", avx512))]
             Kernel::Avx512(avx512) => avx512.warm_start(block, movers),
+        }
+    }
+    /// [`Joints::write`].
+    #[inline]
+    pub(super) fn prepare(self, joints: &Joints, block: &mut Block, shift: u32) -> u8 {
+        match self {
+            Kernel::Definition => joints.write(block, shift),
+            #[cfg(target_arch = "x86_64")]
+            Kernel::Avx2(avx2) => avx2.prepare(joints, block, shift),
+            #[cfg(all(target_arch = "x86_64", avx512))]
+            Kernel::Avx512(avx512) => avx512.prepare(joints, block, shift),
         }
     }
 }

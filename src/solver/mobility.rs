@@ -5,6 +5,7 @@
 //! ratio: κ = k/S = 1 + p_a·τ_a·α_a² + p_b·τ_b·α_b², a body's velocity changes by p·d·(λ̂/κ) and its w by p·τ·α·(λ̂/κ). So any
 //! mass and size fits 32 bits, and only ratios of masses matter.
 
+use super::scales::SPEED_MAX;
 use super::strike::Weight;
 use crate::body::{BodyData, BodyKind, gyration};
 use crate::num::{div, lane, mul_div, round_shift};
@@ -19,6 +20,7 @@ use crate::num::{div, lane, mul_div, round_shift};
 /// | `inverse`, `inverse_shift` | 2^shift/σ, 62 bits | – |
 /// | `scale`, `scale_shift` | 2⁵⁸ over σ brought to 2²⁸ … 2²⁹ by a shift right, 30 bits | – |
 /// | `reach` | Q32 m | – |
+/// | `spin` | Q48 m/s | 400 m/s |
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Mobility {
     mantissa: i64,
@@ -29,9 +31,11 @@ pub(crate) struct Mobility {
     pub(crate) tau_fine: i64,
     inverse: i64,
     inverse_shift: u32,
-    scale: i64,
-    scale_shift: i32,
+    pub(super) scale: i64,
+    pub(super) scale_shift: i32,
     pub(crate) reach: i64,
+    /// How fast w may be so that no point of it turns faster than what is bound for speeds.
+    pub(crate) spin: i64,
     /// Whether its velocities are always zero: its body is static.
     pub(crate) fixed: bool,
 }
@@ -47,6 +51,7 @@ crate::store::show!(Mobility {
     scale,
     scale_shift,
     reach,
+    spin,
     fixed,
 });
 
@@ -79,7 +84,21 @@ impl Mobility {
         let inverse = div(1 << inverse_shift, sigma.into()) as i64;
         let scale_shift = (sigma.ilog2() as i32).saturating_sub(28);
         let scale = div(1 << 58, lane::shifted(sigma, scale_shift).into()) as i64;
-        Mobility { mantissa, exponent, sigma, tau, tau_fine, inverse, inverse_shift, scale, scale_shift, reach, fixed }
+        let spin = div(i128::from(sigma).saturating_mul(SPEED_MAX.into()) << 48, reach.into()) as i64;
+        Mobility {
+            mantissa,
+            exponent,
+            sigma,
+            tau,
+            tau_fine,
+            inverse,
+            inverse_shift,
+            scale,
+            scale_shift,
+            reach,
+            spin,
+            fixed,
+        }
     }
 
     /// What its speeds weigh: w² as much as ω²·I/(m·σ²) = w²/τ.
@@ -109,6 +128,9 @@ impl Mobility {
                 let top = self.exponent.max(other.exponent);
                 let part = |m: &Mobility| m.mantissa >> (top.saturating_sub(m.exponent)).min(63);
                 let (a, b) = (part(self), part(other));
+                if a == b {
+                    return (ONE >> 1) as i32;
+                }
                 let sum = a.saturating_add(b);
                 // 2³⁵ · 2²⁸ fits.
                 b.saturating_mul(ONE).saturating_add(sum >> 1).checked_div(sum).unwrap_or(0) as i32

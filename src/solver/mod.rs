@@ -42,11 +42,12 @@ use direct::{Direct, GIVEN_UP, Rows};
 use fast::{strikes, swings};
 use flight::TICK;
 pub use impact::{Impact, ImpactError, Striker, impact};
-use island::{Islands, Vote, vote};
+use island::{Islands, Vote, hard, vote};
 use kernel::Kernel;
 pub(crate) use mobility::Mobility;
 use mover::Movers;
-use prepare::Joint;
+use prepare::{Basis, Joint};
+
 use rows::{Block, LANES};
 pub(crate) use scales::Scales;
 pub(crate) use show::Substep;
@@ -71,9 +72,10 @@ pub(crate) struct Solver {
     movers: Movers,
     before: Vec<[i64; 6]>,
     free: Vec<bool>,
-    /// By contact: the places of its bodies among the movers, whether it is heavy and squeezes, how it was solved, and what it says
+    /// By contact: the places of its bodies among the movers, its pair, whether it is heavy and squeezes, how it was solved, and what it says
     /// of how its island is to be.
     places: Vec<[u32; 2]>,
+    rows: Vec<u32>,
     heavy: Vec<bool>,
     modes: Vec<u8>,
     votes: Vec<Vote>,
@@ -113,6 +115,7 @@ impl Solver {
             before,
             free,
             places,
+            rows,
             heavy,
             modes,
             votes,
@@ -124,11 +127,12 @@ impl Solver {
             timeline,
             colors,
             blocks,
-            kernel: _,
+            kernel,
         } = self;
         movers.clear(bodies.cold.len());
         timeline.clear(bodies.cold.len());
         places.clear();
+        rows.clear();
         heavy.clear();
         modes.clear();
         votes.clear();
@@ -160,14 +164,26 @@ impl Solver {
             pair.depth = deepest.max(0).saturating_add(ROUNDING);
             pair.manifold.count = 0;
         }
-        for pair in touch.pairs.iter_mut().filter(|pair| pair.manifold.count > 0) {
+        // Without a hard contact nobody asks for votes.
+        let mut any_hard = false;
+        for (at, pair) in touch.pairs.iter_mut().enumerate().filter(|(_, pair)| pair.manifold.count > 0) {
             pair.row = places.len() as u32;
-            places.push(pair.bodies.map(|slot| movers.place(slot, bodies, &mobilities[slot as usize], scales)));
-            let old = if pair.old == NEW { Contact::default() } else { contacts.get(pair.old as usize) };
+            // All that move have one by now.
+            places.push(pair.bodies.map(|slot| movers.place_of(slot)));
+            rows.push(at as u32);
+            let old = pair.last(contacts);
+            let overlap = overlap(pair);
             heavy.push(Scales::is_heavy(old.normal));
-            squeezed.push(scales.is_squeezed(old.normal, overlap(pair)));
+            squeezed.push(scales.is_squeezed(old.normal, overlap));
             modes.push(old.mode);
-            votes.push(vote(pair, &old, bodies, mobilities, scales));
+            any_hard |= hard(overlap, &old, scales);
+        }
+        if any_hard {
+            votes.extend(rows.iter().map(|&at| {
+                let pair = &touch.pairs[at as usize];
+                let old = pair.last(contacts);
+                vote(pair, &old, bodies, mobilities, scales)
+            }));
         }
         if movers.turns {
             let turn = |pair: &Pair| pair.row != NEW && turns(pair, bodies, mobilities, scales);
@@ -183,20 +199,9 @@ impl Solver {
         islands.find(places, free, votes);
         colors.assign(places, free, heavy, &islands.apart);
         blocks.resize_with(colors.blocks, Block::default);
-        blocks.iter_mut().for_each(Block::clear);
 
-        for pair in touch.pairs.iter().filter(|pair| pair.row != NEW) {
-            let row = pair.row as usize;
-            let [a, b] = pair.bodies.map(|slot| slot as usize);
-            let between = |c: &[i64]| c[b].saturating_sub(c[a]);
-            let between = [between(bodies.x.bits()), between(bodies.y.bits())];
-            let joint = Joint::new(pair, places[row], [between; 2], [&mobilities[a], &mobilities[b]]);
-            let old = if pair.old == NEW { Contact::default() } else { contacts.get(pair.old as usize) };
-            let seat = colors.seats[row] as usize;
-            let block = &mut blocks[seat / LANES];
-            joint.write(block, seat % LANES, &old, pair.friction, scales);
-            block.heavy |= u8::from(heavy[row]) << (seat % LANES);
-        }
+        let basis = Basis { pairs: &touch.pairs, rows, places, heavy, contacts, bodies, mobilities, scales };
+        basis.write(blocks, colors, *kernel);
         let rows = Rows { places, modes, seats: &colors.seats, blocks };
         direct.build(islands, &rows, movers, mobilities, scales);
     }

@@ -102,11 +102,9 @@ impl Movers {
 
     fn enter(&mut self, slot: u32, start: [i64; 3], mobility: &Mobility, scales: &Scales) -> u32 {
         // The rim below the bound of speed, and less than an eighth of a turn in a substep: σ·(π/4)/h.
-        let sigma = i128::from(mobility.sigma);
-        let fast = div(sigma.saturating_mul(SPEED_MAX.into()) << 48, mobility.reach.max(1).into());
-        let eighth = sigma.saturating_mul(scales.rate.into()).saturating_mul(EIGHTH_TURN);
+        let eighth = i128::from(mobility.sigma).saturating_mul(scales.rate.into()).saturating_mul(EIGHTH_TURN);
         let eighth = round_shift(eighth, scales.shift.saturating_add(14));
-        let spin_max = fast.min(eighth) as i64;
+        let spin_max = eighth.min(mobility.spin.into()) as i64;
         let place = self.lanes.len() as u32;
         let begin = start.map(lane::bounded);
         self.lanes.push(Mover { v: [begin[0], begin[1]], w: begin[2], ..Mover::default() });

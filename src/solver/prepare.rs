@@ -1,10 +1,18 @@
 //! From a pair's manifold to its rows.
 
+mod basis;
+mod joints;
+#[cfg(test)]
+mod tests;
+
 use super::mobility::Mobility;
 use super::rows::{Block, Row};
 use super::scales::Scales;
 use crate::contact::{Contact, Pair};
+use crate::narrow::Manifold;
 use crate::num::{lane, mul};
+pub(crate) use basis::Basis;
+pub(super) use joints::Joints;
 
 /// Two bodies with contact points, and what is the same for all their rows.
 pub(crate) struct Joint<'p> {
@@ -102,7 +110,7 @@ impl<'p> Joint<'p> {
         let [one, other] = &self.pair.manifold.points;
         let lower_is_second = self.pair.manifold.count > 1 && other.separation < one.separation;
         let tangent = self.lever(0, if lower_is_second { second[1] } else { first[1] });
-        let known = [self.known(0, old), self.known(1, old)];
+        let known = [0, 1].map(|at| known(&self.pair.manifold, at, old));
         self.write_point(block, i, 0, &self.lever(0, first[0]), known[0].map(|k| old.normal[k]));
         self.write_point(block, i, 1, &self.lever(1, second[0]), known[1].map(|k| old.normal[k]));
         for at in 0..2 {
@@ -114,20 +122,6 @@ impl<'p> Joint<'p> {
         block.couple[0][i] = block.friction.turns(i, first[0]);
         block.couple[1][i] = block.friction.turns(i, second[0]);
         block.couple[2][i] = block.points[0].turns(i, second[0]);
-    }
-
-    /// Which of the points of the last tick's contact a point is.
-    #[inline(always)]
-    fn known(&self, at: usize, old: &Contact) -> Option<usize> {
-        let there = at < usize::from(self.pair.manifold.count);
-        let id = self.pair.manifold.points[at].id;
-        if there && old.count > 0 && old.ids[0] == id {
-            Some(0)
-        } else if there && old.count > 1 && old.ids[1] == id {
-            Some(1)
-        } else {
-            None
-        }
     }
 
     /// A point's row, and what its load is known to have been.
@@ -146,6 +140,20 @@ impl<'p> Joint<'p> {
         }
         let shift = scales.shift.saturating_add(6) as i32;
         lane::limit(lane::shifted(self.pair.manifold.points[at].separation, shift))
+    }
+}
+
+/// Which of the points of the last tick's contact a point is.
+#[inline(always)]
+fn known(manifold: &Manifold, at: usize, old: &Contact) -> Option<usize> {
+    let there = at < usize::from(manifold.count);
+    let id = manifold.points[at].id;
+    if there && old.count > 0 && old.ids[0] == id {
+        Some(0)
+    } else if there && old.count > 1 && old.ids[1] == id {
+        Some(1)
+    } else {
+        None
     }
 }
 

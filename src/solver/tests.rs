@@ -9,20 +9,20 @@ use crate::num::{lane, sin_cos};
 use crate::{Acceleration, Angle, BodyDef, BodyKind, ColliderDef, Commands, Length, Shape, Vec2, World, WorldDef};
 
 /// Numbers that follow from a seed: a linear congruential generator's upper bits (Knuth, MMIX).
-struct Dice(u64);
+pub(super) struct Dice(pub(super) u64);
 
 impl Dice {
-    fn bits(&mut self) -> u64 {
+    pub(super) fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         self.0 ^ self.0 >> 33
     }
 
-    fn one_in(&mut self, n: u64) -> bool {
+    pub(super) fn one_in(&mut self, n: u64) -> bool {
         (self.bits() >> 20) % n == 0
     }
 
     /// Of `low ..= high`: an end, a power of two or one beside it, something of any order of magnitude, or anything.
-    fn within(&mut self, low: i64, high: i64) -> i64 {
+    pub(super) fn within(&mut self, low: i64, high: i64) -> i64 {
         let any = (self.bits() as i64 >> (self.bits() >> 58)).clamp(low, high);
         match self.bits() >> 61 {
             0 => [low, high][usize::from(self.one_in(2))],
