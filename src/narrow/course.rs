@@ -51,6 +51,12 @@ impl Course {
         (i128::from(self.height) << 34).wrapping_add(way)
     }
 
+    /// Whether the height is surely 0 or less at a time, which is no later than `rest` then: what [`Course::at`] rounds off is
+    /// below 2³².
+    pub(super) fn is_down(self, time: i64) -> bool {
+        self.at(time) <= -(1 << 32)
+    }
+
     /// The first time at which the height is 0 or less, rounded down; [`NEVER`] if that is after `rest`.
     pub(super) fn end(self, rest: i64) -> i64 {
         let Course { height, rate, curve } = self;

@@ -219,7 +219,7 @@ impl Path {
             if separation <= touch {
                 break;
             }
-            match moment.advance(&mut axes, separation) {
+            match moment.advance(&mut axes, widest, separation) {
                 NEVER => {
                     // A disc is the same however it turns.
                     let arms = [0, 1].map(|body: usize| if self.turning[body] { 0 } else { self.arms[body] });
@@ -254,27 +254,40 @@ impl Path {
 }
 
 impl Moment {
-    /// How long they cannot touch, being apart. Axes of much less separation than the greatest are left out.
-    fn advance(&self, axes: &mut Axes, separation: i64) -> i64 {
+    /// How long they cannot touch, being apart. Axes of much less separation than the greatest are left out. The widest
+    /// comes first: it tells most often that they never do, and else how long another axis has to last to say more.
+    fn advance(&self, axes: &mut Axes, widest: usize, separation: i64) -> i64 {
         let least = separation.wrapping_mul(5) >> 4;
         let mut step = 0;
-        for index in 0..axes.count {
+        for index in core::iter::once(widest).chain((0..axes.count).filter(|&index| index != widest)) {
             if self.apart(axes, index, least).is_some() {
-                let Some((line, vertices)) = self.line(axes, index) else { continue };
-                let mut first = NEVER;
-                for &q in vertices {
-                    first = first.min(line.course(q).end(self.rest.min(first)));
-                }
-                step = step.max(first);
+                step = self.first(axes, index, step).max(step);
+            }
+            if step == NEVER {
+                break;
             }
         }
         step
     }
 
+    /// When the first vertex may come down to an axis; anything not later than `known` if that is not later.
+    fn first(&self, axes: &Axes, index: usize, known: i64) -> i64 {
+        let Some((line, vertices)) = self.line(axes, index) else { return 0 };
+        let mut first = NEVER;
+        for &q in vertices {
+            let course = line.course(q);
+            if first <= known || course.is_down(known) {
+                return known;
+            }
+            first = first.min(course.end(self.rest.min(first)));
+        }
+        first
+    }
+
     /// Whether they touch and close; if not, how long they cannot.
     fn look(&self, axes: &mut Axes, widest: usize, separation: i64, terms: &Terms) -> Look {
         if separation > terms.tolerance {
-            return match self.advance(axes, separation) {
+            return match self.advance(axes, widest, separation) {
                 NEVER => Look::Never,
                 step => Look::Apart(separation, step),
             };
