@@ -19,6 +19,7 @@ use super::scales::Scales;
 use super::strike::{ONE, Speed, Strike, Weight};
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Touch};
+use crate::geom::Aabb;
 use crate::motion::{Drive, Fault};
 use crate::narrow::{Clearance, Manifold, first_touch};
 use crate::num::{lane::next, mul};
@@ -89,6 +90,13 @@ const NEVER: i64 = i64::MAX;
 /// As a place among the pairs of the tick: one of those that were not among them.
 const LATE: u32 = u32::MAX - 1;
 
+/// A body that left its free way, and the box around its way since: side by side, because each impact looks at all of them.
+#[derive(Clone, Copy, Debug)]
+struct Struck {
+    slot: u32,
+    around: Aabb,
+}
+
 /// What stays the same while impacts are answered.
 pub(crate) struct Stage<'s> {
     pub(crate) bodies: &'s Bodies,
@@ -122,6 +130,19 @@ impl Stage<'_> {
     }
 }
 
+/// Whether the gap of two bodies is so wide that it need not be known how they go, for a time (Q63 s).
+fn is_ample(clearance: &Clearance, [p, q]: [&State; 2], [g, h]: [&[i64; 3]; 2], span: i64) -> bool {
+    let length = |v: [i64; 2], u: [i64; 2]| {
+        let [x, y] = [0, 1].map(|axis: usize| v[axis].saturating_sub(u[axis]).saturating_abs());
+        x.max(y).saturating_add(x.min(y) >> 1)
+    };
+    let between = [q.x[0].saturating_sub(p.x[0]), q.x[1].saturating_sub(p.x[1])];
+    let line = length(p.v, q.v).saturating_add(length([g[0], g[1]], [h[0], h[1]]));
+    let spins =
+        [(p, g), (q, h)].map(|(state, gain)| state.omega.saturating_abs().saturating_add(gain[2].saturating_abs()));
+    clearance.is_ample(between, [p.angle, q.angle], line, spins, span)
+}
+
 /// A pair of the tick whose bodies rows know, and which an impact left at rest: where it touches when the substep ends.
 #[derive(Debug)]
 pub(crate) struct Settled {
@@ -140,8 +161,8 @@ pub(crate) struct Timeline {
     from: i64,
     engaged: Vec<Engaged>,
     queue: BinaryHeap<Reverse<(i64, u32, u32, u32)>>,
-    /// Places of flights that were struck, or that rows sent astray.
-    struck: Vec<u32>,
+    /// The flights that were struck, or that rows sent astray.
+    struck: Vec<Struck>,
     /// Pairs that were not among those of the tick and met: colliders, bodies.
     pub(crate) late: Vec<[[u32; 2]; 2]>,
     /// Places of those of the tick that met.
@@ -264,8 +285,11 @@ impl Timeline {
             return;
         }
         let (p, q) = (a.at(from, scales), b.at(from, scales));
-        let motion = motion(&p, &q, [&a.gain, &b.gain], scales);
         let rest = until.saturating_sub(from);
+        if is_ample(&pair.clearance, [&p, &q], [&a.gain, &b.gain], mul(scales.margins.tick, rest, 32)) {
+            return;
+        }
+        let motion = motion(&p, &q, [&a.gain, &b.gain], scales);
         let closing = mul(least, scales.margins.tick, 71);
         let [one, other] = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
         if motion.fastest([one.reach, other.reach], rest) < closing || pair.clearance.lasts(&motion, rest) {

@@ -56,9 +56,8 @@ impl Timeline {
         }
         self.rest(stage);
         self.locals.retain(|&place| self.flights.list[place as usize].changed);
-        for &place in &self.locals {
-            let flight = &mut self.flights.list[place as usize];
-            flight.surround(stage.mobilities[flight.slot as usize].reach, stage.scales);
+        for at in 0..self.locals.len() {
+            self.surround(self.locals[at], stage);
         }
         for at in 0..self.locals.len() {
             self.meet_again(self.locals[at] as usize, time, span[1], stage, movers);
@@ -209,10 +208,6 @@ impl Timeline {
             return;
         }
         flight.changed = true;
-        if !flight.aside {
-            self.struck.push(place);
-        }
-        flight.aside = true;
         flight.strikes = flight.strikes.saturating_add(1);
         let bound = |speed: &i64| speed.unsigned_abs() >= LIMIT.unsigned_abs();
         if self.speeds[at].iter().any(bound) {
@@ -235,6 +230,7 @@ impl Timeline {
         }
         *omega = add_sat(*omega, mobility.over_sigma(change[2], 48u32.saturating_sub(k), 48));
         movers.strike(flight.place, change, to.saturating_sub(time), stage.scales);
+        self.set_aside(place);
     }
 
     /// Tells what happened.
