@@ -211,7 +211,7 @@ impl Path {
         }
         let disc = |body: usize| Placed { count: 1, radius: outlines[body].reach, ..Placed::default() };
         let hull = |body: usize| if self.turning[body] { disc(body) } else { self.placed(outlines[body], body, 0) };
-        let mut moment = Moment { placed: [hull(0), hull(1)], ..Moment::new(self) };
+        let mut moment = Moment::new(self, [hull(0), hull(1)], [false; 2]);
         for _ in 0..2 {
             moment.set(self, time);
             let mut axes = moment.axes();
@@ -234,10 +234,8 @@ impl Path {
 
     /// The bodies at a time.
     fn at(&self, outlines: [&Outline; 2], time: i64) -> Moment {
-        let mut moment = Moment { turning: self.turning, ..Moment::new(self) };
-        for (body, outline) in outlines.into_iter().enumerate() {
-            moment.placed[body] = self.placed(outline, body, time);
-        }
+        let placed = |body: usize| self.placed(outlines[body], body, time);
+        let mut moment = Moment::new(self, [placed(0), placed(1)], self.turning);
         moment.set(self, time);
         moment
     }
@@ -259,7 +257,7 @@ impl Moment {
     fn advance(&self, axes: &mut Axes, widest: usize, separation: i64) -> i64 {
         let least = separation.wrapping_mul(5) >> 4;
         let mut step = 0;
-        for index in core::iter::once(widest).chain((0..axes.count).filter(|&index| index != widest)) {
+        for index in axes.from(widest) {
             if self.apart(axes, index, least).is_some() {
                 step = self.first(axes, index, step).max(step);
             }
@@ -299,7 +297,7 @@ impl Moment {
         }
         let toward = self.axis(axes, widest).map_or([0; 2], |axis| axis.outward());
         let mut held = None;
-        for index in 0..axes.count {
+        for index in axes.from(widest) {
             if let Some(overlap) = self.apart(axes, index, deep) {
                 // The far side of what is thin is no side to leave by.
                 let behind = overlap < terms.tolerance.wrapping_neg() && self.is_behind(axes, index, toward);
@@ -307,15 +305,13 @@ impl Moment {
                     continue;
                 }
                 let Some((line, vertices)) = self.line(axes, index) else { continue };
-                let wait = self.wait(&line, vertices, terms, band);
-                held = held.max(wait);
+                held = held.max(self.wait(&line, vertices, terms, band));
+                if held > Some(self.rest) {
+                    return Look::Never;
+                }
             }
         }
-        match held {
-            None => Look::Touch,
-            Some(step) if step > self.rest => Look::Never,
-            Some(step) => Look::Held(step.max(1)),
-        }
+        held.map_or(Look::Touch, |step| Look::Held(step.max(1)))
     }
 
     /// Whether an axis points against a direction from a to b.

@@ -72,11 +72,12 @@ pub(super) fn way(v: i64, a: i64, time: i64, shift: u32) -> i64 {
 }
 
 impl Moment {
-    /// At no time yet, and of nothing that turns.
-    pub(super) fn new(path: &Path) -> Moment {
+    /// At no time yet, of outlines that are placed.
+    #[inline]
+    pub(super) fn new(path: &Path, placed: [Placed; 2], turning: [bool; 2]) -> Moment {
         Moment {
-            placed: [Placed::default(), Placed::default()],
-            turning: [false; 2],
+            placed,
+            turning,
             arms: path.arms,
             d: [0; 2],
             v: [0; 2],
@@ -214,6 +215,11 @@ impl Moment {
 }
 
 impl Axes {
+    /// The places of all axes, that of the widest first.
+    pub(super) fn from(&self, widest: usize) -> impl Iterator<Item = usize> + use<> {
+        core::iter::once(widest).chain((0..self.count).filter(move |&index| index != widest))
+    }
+
     /// Adds an axis of at most this separation.
     fn push(&mut self, limit: i64) {
         if let Some(free) = self.limits.get_mut(self.count) {

@@ -211,11 +211,11 @@ impl Timeline {
         self.past.take(bodies);
     }
 
-    /// Takes a pair of the tick in, after bodies have moved freely.
+    /// Takes a pair of the tick in, after bodies have moved freely. It is looked at when the first substep's impacts begin:
+    /// until then rows may push its bodies to other ways.
     pub(crate) fn engage(&mut self, pair: usize, stage: &Stage<'_>, movers: &Movers) {
         let of = &stage.touch.pairs[pair];
-        let at = self.add(of.colliders, of.bodies, pair as u32, false, stage, movers);
-        self.foresee(at, 0, TICK, stage);
+        self.add(of.colliders, of.bodies, pair as u32, false, stage, movers);
     }
 
     fn add(
@@ -226,7 +226,7 @@ impl Timeline {
         held: bool,
         stage: &Stage<'_>,
         movers: &Movers,
-    ) -> usize {
+    ) {
         let flights = bodies.map(|slot| self.flight(slot, stage, movers));
         let at = self.engaged.len();
         let [a, b] = colliders.map(|slot| stage.colliders.rows.value(slot as usize));
@@ -257,7 +257,6 @@ impl Timeline {
             clearance: Clearance::default(),
             rests: false,
         });
-        at
     }
 
     /// Looks when a pair meets, from a time on and as far as the ways of its bodies are known: to `end` if rows push one.
@@ -292,7 +291,7 @@ impl Timeline {
         let motion = motion(&p, &q, [&a.gain, &b.gain], scales);
         let closing = mul(least, scales.margins.tick, 71);
         let [one, other] = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
-        if motion.fastest([one.reach, other.reach], rest) < closing || pair.clearance.lasts(&motion, rest) {
+        if pair.clearance.lasts(&motion, rest) || motion.fastest([one.reach, other.reach], rest) < closing {
             return;
         }
         let depth = pair.depth.saturating_add(DEEPER);
@@ -355,17 +354,19 @@ impl Timeline {
         self.batch.sort_unstable_by_key(|&(_, at)| engaged[at as usize].colliders);
     }
 
-    /// Bodies that rows push go as these have them in this substep; what may meet them is looked at again.
+    /// Bodies that rows push go as these have them in this substep; what may meet them is looked at again. In the first one
+    /// all pairs of the tick are looked at.
     fn follow(&mut self, to: i64, stage: &Stage<'_>, movers: &Movers) {
+        let fresh = if self.from == 0 { self.engaged.len() } else { 0 };
         let mut any = false;
         for place in 0..self.flights.list.len() {
             any |= self.push(place, stage, movers);
         }
         self.look_aside(to, stage, movers);
-        for at in 0..if any { self.engaged.len() } else { 0 } {
+        for at in 0..if any { self.engaged.len() } else { fresh } {
             let Engaged { flights, held, restitution, .. } = self.engaged[at];
             let pushed = flights.iter().any(|&place| self.flights.list[place as usize].pushed);
-            if pushed && (!held || restitution >= ONE) {
+            if at < fresh || pushed && (!held || restitution >= ONE) {
                 self.foresee(at, self.from, to, stage);
             }
         }
