@@ -35,7 +35,7 @@ pub(crate) struct Clearance {
 
 impl Clearance {
     /// What a moment shows along its widest axis, at these angles.
-    pub(super) fn new(moment: &Moment, axes: &Axes, index: usize, angle: [i64; 2], arms: [i64; 2]) -> Clearance {
+    pub(super) fn new(moment: &Moment<'_>, axes: &Axes, index: usize, angle: [i64; 2], arms: [i64; 2]) -> Clearance {
         let Some(axis) = moment.axis(axes, index) else { return Clearance::default() };
         let normal = if axis.owner == 0 { axis.normal } else { axis.normal.map(i32::wrapping_neg) };
         let owner = if axis.edge { axis.owner } else { 2 };

@@ -155,14 +155,14 @@ pub(super) fn bound(v: [i64; 2]) -> i64 {
     x.max(y).saturating_add(x.min(y) >> 1).saturating_add(1)
 }
 
-impl Moment {
+impl Moment<'_> {
     /// How heights over an axis go, and the vertices that matter: the nearest alone if nothing turns.
     ///
     /// Range: a few products of angular velocities below 2⁵⁴, speeds below 2⁵⁶ and distances below 2⁵², each shifted at
     /// once.
     pub(super) fn line(&self, axes: &Axes, index: usize) -> Option<(Line, &[[i64; 2]])> {
         let Axis { normal, owner, from, edge } = self.axis(axes, index)?;
-        let (own, other) = (&self.placed[owner], &self.placed[1 ^ owner]);
+        let (own, other) = (self.placed[owner], self.placed[1 ^ owner]);
         let [d, v, a] = [self.d, self.v, self.a].map(|v| seen(owner, v));
         let radii = if edge { other.radius } else { own.radius.wrapping_add(other.radius) };
         let mut line = Line {

@@ -10,6 +10,7 @@
 mod answer;
 mod astray;
 mod neighbours;
+mod poses;
 
 use super::flight::{Flight, Flights, NONE, Past, State, TICK, motion};
 use super::mobility::Mobility;
@@ -24,6 +25,7 @@ use crate::motion::{Drive, Fault};
 use crate::narrow::{Clearance, Manifold, first_touch};
 use crate::num::{lane::next, mul};
 use core::cmp::Reverse;
+use poses::Poses;
 use std::collections::BinaryHeap;
 
 /// Impacts within this of each other are one: 16 ns at 60 ticks/s, Q32 of a tick. Positions are rounded every tick, and
@@ -186,6 +188,7 @@ pub(crate) struct Timeline {
     members: Vec<u32>,
     strikes: Vec<Strike>,
     restitutions: Vec<i64>,
+    poses: Poses,
     found: Vec<u32>,
     known: Vec<[u32; 2]>,
 }
@@ -195,6 +198,7 @@ impl Timeline {
     pub(crate) fn clear(&mut self, slots: usize) {
         self.flights.clear(slots);
         self.engaged.clear();
+        self.poses.clear();
         self.queue.clear();
         self.struck.clear();
         self.late.clear();
@@ -298,7 +302,8 @@ impl Timeline {
         let slack = if a.place != 0 || b.place != 0 { scales.slack.max(depth) } else { depth };
         // What closes so slowly that it is let, is not so deep when it closes faster that it is lost.
         let slack = slack.max(mul(least.min(scales.least_settled()), scales.margins.tick, 78));
-        if let Some(after) = first_touch(one, other, &motion, rest, closing, slack, &mut pair.clearance) {
+        let placed = self.poses.of(pair.colliders, [one, other], motion.angle);
+        if let Some(after) = first_touch(one, other, placed, &motion, rest, closing, slack, &mut pair.clearance) {
             let time = from.saturating_add(after);
             if time > TICK.saturating_sub(SAME) {
                 // The next tick's, so that what meets when one ends and the other begins meets at one time.
