@@ -7,6 +7,9 @@
 //! | `dot`, `cross` | four `i64` | sum of two products | at most 2¹²⁷ in magnitude, added with saturation |
 //! | `div` | `i128` by `i128` | quotient and remainder | the remainder is compared, never doubled |
 
+/// The greatest magnitude a kernel returns: the range is symmetric, `i64::MIN` is never produced.
+const MAX: i128 = i64::MAX as i128;
+
 /// `value / 2^shift`, rounded.
 ///
 /// Range: any `value`; `shift` above 127 gives 0. Rounding: nearest, ties away from zero.
@@ -51,21 +54,16 @@ const fn limited(shift: u32) -> u32 {
     }
 }
 
-/// `value` limited to ±`i64::MAX`: the range is symmetric, `i64::MIN` is never produced.
+/// `value` limited to ±`i64::MAX`.
 #[inline]
 pub const fn clamp_i64(value: i128) -> i64 {
-    let low = value as i64;
-    // A branch that is never taken costs less than a choice that all that follows waits for.
-    if low as i128 != value {
-        return limit(value);
+    if value > MAX {
+        i64::MAX
+    } else if value < -MAX {
+        -i64::MAX
+    } else {
+        value as i64
     }
-    if low == i64::MIN { -i64::MAX } else { low }
-}
-
-/// The limit on the side of a value that is beyond.
-#[cold]
-const fn limit(value: i128) -> i64 {
-    if value < 0 { -i64::MAX } else { i64::MAX }
 }
 
 /// `a + b`, limited to ±`i64::MAX`.
