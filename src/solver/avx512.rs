@@ -18,15 +18,16 @@ use super::words::{self, Eight, Factor as _, Wide as _, Words};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx512(());
 
-/// Eight numbers of 32 bits, in order.
+/// Eight numbers of 32 bits, in order, with 64 for each: the rows of a contact wait for each other, and what becomes a factor
+/// or was a sum need not be turned into anything on the way.
 #[derive(Clone, Copy)]
-pub(super) struct Narrow(__m256i);
+pub(super) struct Narrow(__m512i);
 
 /// Eight numbers of 64 bits, in order.
 #[derive(Clone, Copy)]
 pub(super) struct Wide(__m512i);
 
-/// Eight numbers of 32 bits in the lower halves of [`Wide`]; the upper ones mean nothing.
+/// Eight numbers of 32 bits in the lower halves of [`Wide`]; the upper ones mean nothing where [`words::Wide::low`] made them.
 #[derive(Clone, Copy)]
 pub(super) struct Factor(__m512i);
 
@@ -114,7 +115,7 @@ impl Words for Avx512 {
 
     #[inline(always)]
     fn narrow(self, value: i32) -> Narrow {
-        Narrow(vector!(_mm256_set1_epi32(value)))
+        Narrow(vector!(_mm512_set1_epi64(value.into())))
     }
 
     #[inline(always)]
@@ -124,7 +125,7 @@ impl Words for Avx512 {
 
     #[inline(always)]
     fn load(self, lane: &Lane) -> Narrow {
-        Narrow(vector!(_mm256_loadu_si256(lane.as_ptr().cast())))
+        Narrow(vector!(_mm512_cvtepi32_epi64(_mm256_loadu_si256(lane.as_ptr().cast()))))
     }
 
     #[inline(always)]
@@ -188,57 +189,57 @@ impl Words for Avx512 {
 impl words::Narrow<Avx512> for Narrow {
     #[inline(always)]
     fn store(self, lane: &mut Lane) {
-        vector!(_mm256_storeu_si256(lane.as_mut_ptr().cast(), self.0));
+        vector!(_mm256_storeu_si256(lane.as_mut_ptr().cast(), _mm512_cvtepi64_epi32(self.0)));
     }
 
     #[inline(always)]
     fn factor(self) -> Factor {
-        Factor(vector!(_mm512_cvtepi32_epi64(self.0)))
+        Factor(self.0)
     }
 
     #[inline(always)]
     fn add(self, other: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_add_epi32(self.0, other.0)))
+        Narrow(vector!(_mm512_add_epi64(self.0, other.0)))
     }
 
     #[inline(always)]
     fn sub(self, other: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_sub_epi32(self.0, other.0)))
+        Narrow(vector!(_mm512_sub_epi64(self.0, other.0)))
     }
 
     #[inline(always)]
     fn min(self, other: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_min_epi32(self.0, other.0)))
+        Narrow(vector!(_mm512_min_epi64(self.0, other.0)))
     }
 
     #[inline(always)]
     fn max(self, other: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_max_epi32(self.0, other.0)))
+        Narrow(vector!(_mm512_max_epi64(self.0, other.0)))
     }
 
     #[inline(always)]
     fn abs(self) -> Narrow {
-        Narrow(vector!(_mm256_abs_epi32(self.0)))
+        Narrow(vector!(_mm512_abs_epi64(self.0)))
     }
 
     #[inline(always)]
     fn shifted<const SHIFT: i32>(self) -> Narrow {
-        Narrow(vector!(_mm256_srai_epi32::<SHIFT>(self.0)))
+        Narrow(vector!(_mm512_srav_epi64(self.0, _mm512_set1_epi64(SHIFT.into()))))
     }
 
     #[inline(always)]
     fn or(self, other: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_or_si256(self.0, other.0)))
+        Narrow(vector!(_mm512_or_si512(self.0, other.0)))
     }
 
     #[inline(always)]
     fn above(self, other: Narrow) -> Mask {
-        Mask(vector!(_mm256_cmpgt_epi32_mask(self.0, other.0)))
+        Mask(vector!(_mm512_cmpgt_epi64_mask(self.0, other.0)))
     }
 
     #[inline(always)]
     fn any(self) -> bool {
-        vector!(_mm256_testz_si256(self.0, self.0)) == 0
+        vector!(_mm512_test_epi64_mask(self.0, self.0)) != 0
     }
 }
 
@@ -255,7 +256,7 @@ impl words::Mask<Avx512> for Mask {
 
     #[inline(always)]
     fn pick(self, yes: Narrow, no: Narrow) -> Narrow {
-        Narrow(vector!(_mm256_mask_blend_epi32(self.0, no.0, yes.0)))
+        Narrow(vector!(_mm512_mask_blend_epi64(self.0, no.0, yes.0)))
     }
 
     #[inline(always)]
@@ -272,7 +273,7 @@ impl words::Factor<Avx512> for Factor {
 
     #[inline(always)]
     fn narrow(self) -> Narrow {
-        Narrow(vector!(_mm512_cvtepi64_epi32(self.0)))
+        Narrow(self.0)
     }
 }
 
