@@ -324,7 +324,7 @@ fn pile() -> Scene {
     Scene::new(things)
 }
 
-fn pyramid(rows: Micro) -> Scene {
+pub fn pyramid(rows: Micro) -> Scene {
     let mut things = vec![Thing::wall([0, -ONE], 2 * rows * ONE, 2 * ONE)];
     for row in 0..rows {
         for column in 0..rows - row {

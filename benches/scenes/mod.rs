@@ -7,6 +7,7 @@
 
 pub mod exact;
 pub mod features;
+pub mod growth;
 pub mod hard;
 
 /// Millionths of an SI unit.

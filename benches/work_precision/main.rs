@@ -1,7 +1,7 @@
 //! How wrong the engine is, and at what cost: `cargo bench --bench work_precision` writes `benches/report` anew.
 //!
-//! `-- grid`, `-- hard` or `-- features` measures a part only; `-- page` draws what was measured before; `-- peers` reads
-//! what `benches/peers/driver.py` left in `$PEERS`.
+//! `-- grid`, `-- hard`, `-- features`, `-- growth` or `-- lockstep` measures a part only, and a number after `growth` is the
+//! most bodies; `-- page` draws what was measured before; `-- peers` reads what `benches/peers/driver.py` left in `$PEERS`.
 #![allow(
     clippy::disallowed_types,
     clippy::arithmetic_side_effects,
@@ -13,7 +13,9 @@ mod draw;
 mod exact;
 mod features;
 mod grid;
+mod growth;
 mod hard;
+mod lockstep;
 mod machine;
 mod page;
 mod peers;
@@ -52,6 +54,13 @@ fn main() {
     }
     if wanted("hard") {
         write("hard.csv", hard::csv(&hard::measure()));
+    }
+    if wanted("growth") {
+        let most = parts.iter().find_map(|part| part.parse().ok()).unwrap_or(i64::MAX);
+        write("growth.csv", growth::csv(&growth::measure(most)));
+    }
+    if wanted("lockstep") {
+        write("lockstep.csv", lockstep::csv(&lockstep::measure(ROUNDS)));
     }
     if parts.contains(&"peers") {
         raw::write(&std::env::var_os("PEERS").map_or(root.join("target/peers"), PathBuf::from), &folder);

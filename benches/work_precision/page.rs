@@ -3,7 +3,7 @@
 use crate::exact::CASES;
 use crate::grid::{self, Point};
 use crate::table::{Table, error, figures, length, markdown};
-use crate::{draw, peers};
+use crate::{draw, growth, lockstep, peers};
 use std::path::Path;
 
 const HOW: &str = "\
@@ -94,7 +94,8 @@ pub fn write(folder: &Path) {
     page += " and `benches/peers/run.sh`; do not edit. The figures are in the `.csv` files beside this page.\n\n";
     page += &peers::summary(folder);
     page += "Below: [work and precision](#work-and-precision), [hard cases](#hard-cases), [other engines](#other-engines), \
-             [what features cost](#what-features-cost), [the machine](#the-machine), [commands](#commands).\n\n";
+             [growth](#growth), [what features cost](#what-features-cost), [what lockstep costs](#what-lockstep-costs), \
+             [the machine](#the-machine), [commands](#commands).\n\n";
     page += "## Work and precision\n\n";
     page += HOW;
     if let Some(points) = file("work_precision.csv").map(|table| grid::read(&table)) {
@@ -115,11 +116,17 @@ pub fn write(folder: &Path) {
         page += &hard(&table);
     }
     page += &peers::tables(folder);
+    if let Some(table) = file("growth.csv") {
+        page += &growth::page(folder, &table);
+    }
     if let Some(table) = file("features.csv") {
         page += "\n## What features cost\n\n";
         page += "A thousand boxes; each row adds one thing to the first one. The pile's rows are different piles, for what is \
                  added changes how it falls.\n\n";
         page += &features(&table);
+    }
+    if let Some(table) = file("lockstep.csv") {
+        page += &lockstep::page(&table);
     }
     page += "\n## The machine\n\n";
     page += &machine;
@@ -132,7 +139,7 @@ pub fn write(folder: &Path) {
     page += "\n## Commands\n\n";
     page += "| command | writes | takes |\n| --- | --- | --- |\n";
     page += "| `cargo bench --bench work_precision` | everything but the peers' figures | 4 min of processor time |\n";
-    page += "| `cargo bench --bench work_precision -- grid` (or `hard`, `features`) | that part | |\n";
+    page += "| `cargo bench --bench work_precision -- grid` (or `hard`, `features`, `growth`, `lockstep`) | that part | |\n";
     page += "| `cargo bench --bench work_precision -- page` | diagrams and this page from the `.csv` files | 1 s |\n";
     page += "| `benches/peers/run.sh` | the peers' figures; see [its page](../peers/README.md) | 30 min, and 5 to 20 to build |\n";
     std::fs::write(folder.join("README.md"), page).expect("the folder is ours");
