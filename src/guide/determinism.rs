@@ -66,7 +66,7 @@
 //! | this machine | a recorder that computes the confirmed commands a second time: a difference is this machine's memory, not the network |
 //! | a finished match | [`replays`](super::replays): every tick's hash, on any machine, at any time |
 //! | a state from outside | [`World::load`](crate::World::load) refuses what is not exactly a save, and what breaks an invariant |
-//! | this engine | goldens on x86-64, i686 and big-endian s390x, in debug, release and release with assertions; its rules against floats, clocks and hash maps are a test |
+//! | this engine | goldens and random scenes in many builds and on many platforms, every tick compared (`replays/PLATFORMS.md`); its rules against floats, clocks and hash maps are a test |
 //!
 //! ## Hazards
 //!

@@ -1,0 +1,34 @@
+//! `streams FOLDER`: a line `NAME TICK HASH TOLD` for every tick of the recordings in a folder, then of the random scenes.
+
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+use tamias2d_streams::play::{SEEDS, golden, random};
+
+fn main() -> ExitCode {
+    let folder = std::env::args().nth(1).unwrap_or_else(|| "replays".into());
+    match play(Path::new(&folder)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("streams: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn play(folder: &Path) -> Result<(), String> {
+    let mut out = std::io::stdout().lock();
+    let mut say = |lines: String| out.write_all(lines.as_bytes()).map_err(|error| error.to_string());
+    let unreadable = |error| format!("{}: {error}", folder.display());
+    let mut names = Vec::new();
+    for entry in folder.read_dir().map_err(unreadable)? {
+        let name = entry.map_err(unreadable)?.file_name().to_string_lossy().into_owned();
+        names.extend(name.strip_suffix(".replay").map(String::from));
+    }
+    names.sort();
+    for name in names {
+        let path = folder.join(format!("{name}.replay"));
+        say(golden(&name, &std::fs::read(&path).map_err(unreadable)?)?)?;
+    }
+    SEEDS.into_iter().try_for_each(|seed| say(random(seed)?))
+}
