@@ -1,7 +1,8 @@
 //! Long runs beside twins: taken back, read from saves, recorded and played, moved, turned. No bit differs, or the first tick and field
 //! that do are named.
 //!
-//! The long ones: `cargo test --release --test soak -- --ignored --nocapture`.
+//! The long ones: `cargo test --release --test soak -- --ignored --nocapture`. What they print at the end, a digest of all final
+//! states, is the same in every build: with other lanes, on other machines.
 #![allow(clippy::disallowed_types, clippy::arithmetic_side_effects, reason = "tests, not the engine")]
 
 mod common;
@@ -16,7 +17,7 @@ use common::position;
 use std::io::Cursor;
 use std::time::Instant;
 use tamias2d::replay::{Player, Recorder, Recording, Segment};
-use tamias2d::{Command, Commands, Rollback, World};
+use tamias2d::{Command, Commands, Rollback, Vec2, Velocity, World};
 use weather::{View, Weather};
 
 /// So far a rollback goes.
@@ -157,6 +158,24 @@ fn rooms(seeds: std::ops::Range<u64>, ticks: u64) {
         start.elapsed().as_secs_f64()
     );
     assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+/// The alarms ring: one bit of one body.
+#[test]
+fn a_difference_is_named_by_tick_and_field() {
+    let (def, mut weather) = Weather::new(3);
+    let mut world = World::new(&def).expect("accepted");
+    give(&mut world, &weather.begin());
+    world.step();
+    let mut other = world.clone();
+    let body = world.bodies().last().expect("there are some").id();
+    let v = world.body(body).expect("it exists").velocity();
+    let v = Vec2::new(v.x, Velocity::from_bits(v.y.to_bits() ^ 1));
+    other.set_velocity(body, v).expect("in range");
+    let error = same("changed", &world, &other).expect_err("one bit differs");
+    assert!(error.starts_with(&format!("changed, tick 1: bodies[{}].velocity.y: ", body.index)), "{error}");
+    let error = View::Moved([0, 0]).difference(&world, &other).expect("one bit differs");
+    assert!(error.starts_with(&format!("{body}.velocity.y: ")), "{error}");
 }
 
 #[test]
