@@ -141,7 +141,8 @@ impl Movers {
         let place = self.enter(slot, speed(begin), mobility, scales);
         let (mover, course) = (&mut self.lanes[place as usize], &mut self.courses[place as usize]);
         course.kick = kick(&course.start, speeds(bodies, slot as usize, mobility, scales), scales);
-        let speed = lane::held(speed(now));
+        // A rim may be as fast as the format goes, and that is beyond what `held` takes.
+        let speed = lane::held(speed(now).map(lane::bounded));
         [mover.v[0], mover.v[1], mover.w] = speed;
         course.begin = [0, 1, 2].map(|axis: usize| lane::bounded(speed[axis].saturating_sub(course.kick[axis])));
         // The inverse of `state`: ways over h.
