@@ -13,7 +13,8 @@ use std::time::Instant;
 /// Gives each file of a target's corpus to it. How many there were.
 fn play(target: &str, run: fn(&[u8])) -> usize {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
-    let mut files: Vec<_> = fs::read_dir(folder).expect("a corpus").map(|entry| entry.expect("a file").path()).collect();
+    let mut files: Vec<_> =
+        fs::read_dir(folder).expect("a corpus").map(|entry| entry.expect("a file").path()).collect();
     files.sort();
     let (start, mut slowest) = (Instant::now(), (0.0, String::new()));
     for path in &files {
@@ -26,7 +27,13 @@ fn play(target: &str, run: fn(&[u8])) -> usize {
             slowest = (took, path.display().to_string());
         }
     }
-    println!("{target}: {} files in {:.2} s, {:.2} s for {}", files.len(), start.elapsed().as_secs_f64(), slowest.0, slowest.1);
+    println!(
+        "{target}: {} files in {:.2} s, {:.2} s for {}",
+        files.len(),
+        start.elapsed().as_secs_f64(),
+        slowest.0,
+        slowest.1
+    );
     files.len()
 }
 

@@ -98,7 +98,9 @@ fn room(seed: u64, ticks: u64) -> Result<u64, String> {
             for (world, view) in seen.iter_mut().zip(views) {
                 let other = world.apply(view.command(command.clone()));
                 if other.is_ok() != reply.is_ok() {
-                    return Err(format!("seed {seed}, tick {tick}, {view:?}: {command:?} gives {reply:?} and {other:?}"));
+                    return Err(format!(
+                        "seed {seed}, tick {tick}, {view:?}: {command:?} gives {reply:?} and {other:?}"
+                    ));
                 }
             }
         }

@@ -4,9 +4,7 @@
 use super::draw::Draw;
 use super::{LONGEST, MOST_BODIES, MOST_TICKS, is_small, sound};
 use tamias2d::replay::{Player, Recorder, Recording};
-use tamias2d::{
-    Aabb, AttractorId, BodyId, ColliderId, Command, Commands, Filter, Reply, Rollback, World,
-};
+use tamias2d::{Aabb, AttractorId, BodyId, ColliderId, Command, Commands, Filter, Reply, Rollback, World};
 
 /// So many commands in all; a tick of some bodies is dearer than a hundred.
 const MOST_COMMANDS: usize = 256;

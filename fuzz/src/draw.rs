@@ -2,8 +2,8 @@
 
 use tamias2d::{
     Acceleration, Angle, AngularImpulse, AngularVelocity, Attractor, BodyDef, BodyKind, ColliderDef, Damping, Density,
-    Filter, Force, Friction, Impulse, Inertia, Integrator, Length, Mass, Mu, Restitution, Shape, Sleeping, Time, Torque,
-    Vec2, Velocity, WorldDef, num::Quantity,
+    Filter, Force, Friction, Impulse, Inertia, Integrator, Length, Mass, Mu, Restitution, Shape, Sleeping, Time,
+    Torque, Vec2, Velocity, WorldDef, num::Quantity,
 };
 
 /// Reads decisions off the front of bytes; at their end all are 0.

@@ -149,7 +149,10 @@ impl Movers {
         let over = |way: i64, by: i64, bits: u32| div(i128::from(way) << bits, by.into()) as i64;
         let gone = |axis: usize| over(now.x[axis].saturating_sub(begin.x[axis]), scales.line, 51u32.saturating_sub(k));
         let rolled = mul(now.angle.saturating_sub(begin.angle), mobility.sigma, k.saturating_add(30));
-        course.sum = [gone(0), gone(1), over(rolled, scales.turn, 33)];
+        // A rim may have gone farther than `go` can say, by far: then it stands at the end of what positions hold, and stays there.
+        let most = div(1 << 62, scales.coarse.into()) as i64;
+        let rolled = lane::clamp(over(rolled, scales.turn, 33), most.saturating_neg(), most);
+        course.sum = [gone(0), gone(1), rolled];
         (course.pushed, course.hit) = (true, true);
         mover.go(&course.sum, scales);
         place

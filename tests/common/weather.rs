@@ -37,7 +37,8 @@ impl Weather {
 
     /// The room, a paddle that turns, and half of the bodies.
     pub fn begin(&mut self) -> Vec<Command> {
-        let wall = |x: f64, y: f64, width: f64, height: f64| ColliderDef { offset: at(x, y), ..rectangle(width, height) };
+        let wall =
+            |x: f64, y: f64, width: f64, height: f64| ColliderDef { offset: at(x, y), ..rectangle(width, height) };
         let long = 2.0 * ROOM + 1.0;
         let walls = vec![
             wall(0.0, -ROOM, long, 1.0),
@@ -139,7 +140,9 @@ impl Weather {
             6 => Command::SetPosition { body, position: self.place() },
             7 => Command::SetAngle { body, angle: Angle::from_bits((self.rng.bits() >> 14) as i64) },
             8 | 9 => Command::SetVelocity { body, velocity: vel(x, y) },
-            10 => Command::SetAngularVelocity { body, angular_velocity: AngularVelocity::from_f64(x).expect("in range") },
+            10 => {
+                Command::SetAngularVelocity { body, angular_velocity: AngularVelocity::from_f64(x).expect("in range") }
+            }
             11 | 12 => Command::ApplyImpulse { body, impulse: newton_seconds(x, y), point: Some(self.place()) },
             13..=15 => Command::ApplyForce { body, force: newtons(x * 20.0, y * 20.0), point: None },
             16 => Command::ApplyTorque { body, torque: Torque::from_f64(x).expect("in range") },
@@ -165,7 +168,9 @@ impl Weather {
                 Some(collider) => Command::SetFilter { collider, filter: self.filter() },
                 None => Command::ClearStatus,
             },
-            _ => Command::SetDamping { body, linear: Damping::from_bits(1 << 47), angular: Damping::from_bits(1 << 46) },
+            _ => {
+                Command::SetDamping { body, linear: Damping::from_bits(1 << 47), angular: Damping::from_bits(1 << 46) }
+            }
         }
     }
 }
@@ -192,7 +197,9 @@ const HALF: i64 = 1 << 47;
 impl View {
     fn point(self, p: Vec2<Length>) -> Vec2<Length> {
         match self {
-            View::Moved(by) => Vec2::new(Length::from_bits(p.x.to_bits() + by[0]), Length::from_bits(p.y.to_bits() + by[1])),
+            View::Moved(by) => {
+                Vec2::new(Length::from_bits(p.x.to_bits() + by[0]), Length::from_bits(p.y.to_bits() + by[1]))
+            }
             View::Turned => vector!(true, p, Length),
         }
     }
@@ -225,11 +232,9 @@ impl View {
                 Command::SetVelocity { body, velocity: vector!(turned, velocity, Velocity) }
             }
             Command::SetForce { body, force } => Command::SetForce { body, force: vector!(turned, force, Force) },
-            Command::ApplyForce { body, force, point } => Command::ApplyForce {
-                body,
-                force: vector!(turned, force, Force),
-                point: point.map(|p| self.point(p)),
-            },
+            Command::ApplyForce { body, force, point } => {
+                Command::ApplyForce { body, force: vector!(turned, force, Force), point: point.map(|p| self.point(p)) }
+            }
             Command::ApplyImpulse { body, impulse, point } => Command::ApplyImpulse {
                 body,
                 impulse: vector!(turned, impulse, Impulse),
@@ -238,9 +243,7 @@ impl View {
             Command::CreateAttractor { attractor } => Command::CreateAttractor {
                 attractor: Attractor { position: self.point(attractor.position), ..attractor },
             },
-            Command::SetGravity { gravity } => {
-                Command::SetGravity { gravity: vector!(turned, gravity, Acceleration) }
-            }
+            Command::SetGravity { gravity } => Command::SetGravity { gravity: vector!(turned, gravity, Acceleration) },
             other => other,
         }
     }

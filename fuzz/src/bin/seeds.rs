@@ -4,10 +4,10 @@
 
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
+use tamias2d::Frame;
 use tamias2d::hello::Hello;
 use tamias2d::replay::{Evidence, Recorder, Recording};
 use tamias2d::scene::Scene;
-use tamias2d::Frame;
 
 fn put(folder: &Path, target: &str, name: &str, bytes: &[u8]) -> io::Result<()> {
     let folder = folder.join(target);
