@@ -139,14 +139,18 @@ impl Movers {
         let place = self.enter(slot, speed(begin), mobility, scales);
         let (mover, course) = (&mut self.lanes[place as usize], &mut self.courses[place as usize]);
         course.kick = kick(&course.start, speeds(bodies, slot as usize, mobility, scales), scales);
-        let speed = lane::held(speed(now));
+        // A rim may be as fast as the format goes, and that is beyond what `held` takes.
+        let speed = lane::held(speed(now).map(lane::bounded));
         [mover.v[0], mover.v[1], mover.w] = speed;
         course.begin = [0, 1, 2].map(|axis: usize| lane::bounded(speed[axis].saturating_sub(course.kick[axis])));
         // The inverse of `state`: ways over h.
         let over = |way: i64, by: i64, bits: u32| div(i128::from(way) << bits, by.into()) as i64;
         let gone = |axis: usize| over(now.x[axis].saturating_sub(begin.x[axis]), scales.line, 51u32.saturating_sub(k));
         let rolled = mul(now.angle.saturating_sub(begin.angle), mobility.sigma, k.saturating_add(30));
-        course.sum = [gone(0), gone(1), over(rolled, scales.turn, 33)];
+        // A rim may have gone farther than `go` can say, by far: then it stands at the end of what positions hold, and stays there.
+        let most = div(1 << 62, scales.coarse.into()) as i64;
+        let rolled = lane::clamp(over(rolled, scales.turn, 33), most.saturating_neg(), most);
+        course.sum = [gone(0), gone(1), rolled];
         (course.pushed, course.hit) = (true, true);
         mover.go(&course.sum, scales);
         place
