@@ -197,7 +197,8 @@ fn panel(area: &Area, panel: &Panel, [left, right]: [i32; 2], [low, high]: [i32;
 /// Diagrams side by side, under one title and legend.
 pub fn sheet(path: &Path, sheet: &Sheet, panels: &[Panel]) {
     let rows = panels.len().div_ceil(sheet.columns);
-    let size = (340 * sheet.columns as u32, 66 + 240 * rows as u32 + 34);
+    // A single diagram is as wide as its legend.
+    let size = ((340 * sheet.columns as u32).max(520), 66 + 240 * rows as u32 + 34);
     let root = SVGBackend::new(path, size).into_drawing_area();
     root.fill(&WHITE).expect("drawn in memory");
     let below = head(&root, sheet.title, sheet.legend);

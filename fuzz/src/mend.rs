@@ -72,7 +72,7 @@ const HEADER: usize = 32;
 const HEAD: usize = 40;
 
 /// A replay: its header, the hashes of its worlds, and the chain of its records. The places of its ticks' hashes.
-fn chain(bytes: &mut Vec<u8>) -> Vec<usize> {
+fn chain(bytes: &mut [u8]) -> Vec<usize> {
     header(bytes, b"TAMIAS-R", REPLAY_VERSION);
     if bytes.len() < HEADER {
         return Vec::new();

@@ -71,9 +71,11 @@ impl Colors {
         for color in 0..=APART {
             self.swept = if color == APART { blocks } else { self.swept };
             let [light, heavy] = counts[color];
-            let (size, width) = (light.saturating_add(heavy), if color == REST { 1 } else { LANES });
+            // How many sit in a block, and how far apart seats are.
+            let (width, pitch) = if color == REST { (1, LANES) } else { (LANES, 1) };
+            let size = light.saturating_add(heavy);
             let first = blocks.saturating_mul(LANES);
-            seats[color] = [first.saturating_add(heavy.saturating_mul(LANES / width)), first].map(|seat| seat as u32);
+            seats[color] = [first.saturating_add(heavy.saturating_mul(pitch)), first].map(|seat| seat as u32);
             blocks = blocks.saturating_add(size.div_ceil(width));
         }
         self.blocks = blocks;

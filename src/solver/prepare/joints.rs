@@ -70,9 +70,9 @@ impl Joints {
             self.arm[at][1][i] = manifold.points[at].arm[1];
             self.separation[at][i] = manifold.points[at].separation;
         }
-        for axis in 0..2 {
+        for (axis, between) in between.into_iter().enumerate() {
             self.normal[axis][i] = manifold.normal[axis].into();
-            self.between[axis][i] = between[axis];
+            self.between[axis][i] = between;
         }
         let first = mobility[0].share(mobility[1]);
         let second = if mobility[1].moves() { (1i32 << 28).saturating_sub(first) } else { 0 };

@@ -29,7 +29,8 @@ fn mobility(dice: &mut Dice, wild: bool) -> Mobility {
     let reach = if wild { dice.within(1, 1 << 47) } else { (1 << 31) + dice.within(0, 1 << 31) };
     let mass = if wild { i128::from(dice.within(1 << 44, i64::MAX)) << 20 } else { 1 << 64 };
     // (1/4 … 1 of the reach)², or anything.
-    let square = i128::from(reach) * i128::from(reach) / 4 >> if wild { dice.bits() >> 59 } else { dice.bits() >> 63 };
+    let square =
+        (i128::from(reach) * i128::from(reach) / 4) >> if wild { dice.bits() >> 59 } else { dice.bits() >> 63 };
     let inertia = crate::num::mul_div(square, mass, 1 << 64).max(1 << 25);
     Mobility::new(&BodyData {
         kind,

@@ -27,7 +27,6 @@ impl Poses {
     /// Forgets all: commands may change what a collider is.
     pub(super) fn clear(&mut self) {
         self.keys = [NOBODY; KEPT];
-        self.placed.resize(KEPT, Placed::default());
     }
 
     /// Two outlines, each of a collider and turned by an angle.
@@ -35,6 +34,10 @@ impl Poses {
         let seat = |body: usize| colliders[body] as usize % KEPT;
         // Those of a pair keep out of each other's way.
         let seats = [seat(0), if seat(1) == seat(0) { seat(1) ^ 1 } else { seat(1) }];
+        let room = seats[0].max(seats[1]).saturating_add(1);
+        if self.placed.len() < room {
+            self.placed.resize(room, Placed::default());
+        }
         for body in 0..2 {
             let (seat, key) = (seats[body], (colliders[body], angles[body]));
             if self.keys[seat] != key {
