@@ -138,7 +138,7 @@ pub fn write(folder: &Path) {
              only.\n";
     page += "\n## Commands\n\n";
     page += "| command | writes | takes |\n| --- | --- | --- |\n";
-    page += "| `cargo bench --bench work_precision` | everything but the peers' figures | 4 min of processor time |\n";
+    page += "| `cargo bench --bench work_precision` | everything but the peers' figures | 6 min of processor time |\n";
     page += "| `cargo bench --bench work_precision -- grid` (or `hard`, `features`, `growth`, `lockstep`) | that part | |\n";
     page += "| `cargo bench --bench work_precision -- page` | diagrams and this page from the `.csv` files | 1 s |\n";
     page += "| `benches/peers/run.sh` | the peers' figures; see [its page](../peers/README.md) | 30 min, and 5 to 20 to build |\n";
