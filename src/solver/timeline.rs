@@ -203,11 +203,12 @@ impl Timeline {
         self.past.take(bodies);
     }
 
-    /// Takes a pair of the tick in, after bodies have moved freely. It is looked at when the first substep's impacts begin:
-    /// until then rows may push its bodies to other ways.
+    /// Takes a pair of the tick in, after bodies have moved freely. It is looked at although rows may yet push its bodies to other
+    /// ways: a time that is no longer theirs opens a batch all the same, so the law wants it queued.
     pub(crate) fn engage(&mut self, pair: usize, stage: &Stage<'_>, movers: &Movers) {
         let of = &stage.touch.pairs[pair];
-        self.add(of.colliders, of.bodies, pair as u32, false, stage, movers);
+        let at = self.add(of.colliders, of.bodies, pair as u32, false, stage, movers);
+        self.foresee(at, 0, TICK, stage);
     }
 
     fn add(
@@ -218,7 +219,7 @@ impl Timeline {
         held: bool,
         stage: &Stage<'_>,
         movers: &Movers,
-    ) {
+    ) -> usize {
         let flights = bodies.map(|slot| self.flight(slot, stage, movers));
         let at = self.engaged.len();
         let [a, b] = colliders.map(|slot| stage.colliders.rows.value(slot as usize));
@@ -249,6 +250,7 @@ impl Timeline {
             clearance: Clearance::default(),
             rests: false,
         });
+        at
     }
 
     /// By how many times the answers of this tick exceed what a world has.
@@ -296,19 +298,17 @@ impl Timeline {
         self.batch.sort_unstable_by_key(|&(_, at)| engaged[at as usize].colliders);
     }
 
-    /// Bodies that rows push go as these have them in this substep; what may meet them is looked at again. In the first one
-    /// all pairs of the tick are looked at.
+    /// Bodies that rows push go as these have them in this substep; what may meet them is looked at again.
     fn follow(&mut self, to: i64, stage: &Stage<'_>, movers: &Movers) {
-        let fresh = if self.from == 0 { self.engaged.len() } else { 0 };
         let mut any = false;
         for place in 0..self.flights.list.len() {
             any |= self.push(place, stage, movers);
         }
         self.look_aside(to, stage, movers);
-        for at in 0..if any { self.engaged.len() } else { fresh } {
+        for at in 0..if any { self.engaged.len() } else { 0 } {
             let Engaged { flights, held, restitution, .. } = self.engaged[at];
             let pushed = flights.iter().any(|&place| self.flights.list[place as usize].pushed);
-            if at < fresh || pushed && (!held || restitution >= ONE) {
+            if pushed && (!held || restitution >= ONE) {
                 self.foresee(at, self.from, to, stage);
             }
         }
