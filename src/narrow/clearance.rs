@@ -35,33 +35,11 @@ pub(crate) struct Clearance {
 
 impl Clearance {
     /// What a moment shows along its widest axis, at these angles.
-    pub(super) fn new(moment: &Moment<'_>, axes: &Axes, index: usize, angle: [i64; 2], arms: [i64; 2]) -> Clearance {
+    pub(super) fn new(moment: &Moment, axes: &Axes, index: usize, angle: [i64; 2], arms: [i64; 2]) -> Clearance {
         let Some(axis) = moment.axis(axes, index) else { return Clearance::default() };
         let normal = if axis.owner == 0 { axis.normal } else { axis.normal.map(i32::wrapping_neg) };
         let owner = if axis.edge { axis.owner } else { 2 };
         Clearance { normal, gap: (axes.limits[index] >> 6).max(0), d: moment.d, angle, arms, owner }
-    }
-
-    /// Whether outlines surely stay apart by what is needed to know it of a few products: no point comes nearer along a
-    /// direction that stays by more than it moves. `d`, `angle`: of now; `line`, `spins`: how fast the centres move against
-    /// each other at most until a time, and each turns (Q48 m/s, rad/s); `span`: the time until then, Q63 s.
-    pub(crate) fn is_ample(&self, d: [i64; 2], angle: [i64; 2], line: i64, spins: [i64; 2], span: i64) -> bool {
-        let near = NEAR >> 5;
-        if self.gap <= near {
-            return false;
-        }
-        let gone = difference(d, self.d);
-        let rim = |body: usize| mul(spins[body], self.arms[body], 32);
-        // 101/16 is a little more than 2π.
-        let turned = |body: usize| {
-            let turns = angle[body].saturating_sub(self.angle[body]).saturating_abs();
-            mul(turns, self.arms[body], 48).saturating_mul(101) >> 4
-        };
-        let moved = mul(line.saturating_add(rim(0)).saturating_add(rim(1)), span, 79);
-        let lost = bound(gone).saturating_add(moved).saturating_add(turned(0)).saturating_add(turned(1));
-        let far = bound(d).saturating_add(bound(self.d));
-        // 16 for the roundings of all of these.
-        self.gap.saturating_sub(lost).saturating_sub(far >> 28).saturating_sub(16) > near
     }
 
     /// Whether outlines that move so surely stay apart, and not only just, for the time 0 ..= until (Q32 of a tick).

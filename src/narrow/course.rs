@@ -51,12 +51,6 @@ impl Course {
         (i128::from(self.height) << 34).wrapping_add(way)
     }
 
-    /// Whether the height is surely 0 or less at a time, which is no later than `rest` then: what [`Course::at`] rounds off is
-    /// below 2³².
-    pub(super) fn is_down(self, time: i64) -> bool {
-        self.at(time) <= -(1 << 32)
-    }
-
     /// The first time at which the height is 0 or less, rounded down; [`NEVER`] if that is after `rest`.
     pub(super) fn end(self, rest: i64) -> i64 {
         let Course { height, rate, curve } = self;
@@ -155,14 +149,14 @@ pub(super) fn bound(v: [i64; 2]) -> i64 {
     x.max(y).saturating_add(x.min(y) >> 1).saturating_add(1)
 }
 
-impl Moment<'_> {
+impl Moment {
     /// How heights over an axis go, and the vertices that matter: the nearest alone if nothing turns.
     ///
     /// Range: a few products of angular velocities below 2⁵⁴, speeds below 2⁵⁶ and distances below 2⁵², each shifted at
     /// once.
     pub(super) fn line(&self, axes: &Axes, index: usize) -> Option<(Line, &[[i64; 2]])> {
         let Axis { normal, owner, from, edge } = self.axis(axes, index)?;
-        let (own, other) = (self.placed[owner], self.placed[1 ^ owner]);
+        let (own, other) = (&self.placed[owner], &self.placed[1 ^ owner]);
         let [d, v, a] = [self.d, self.v, self.a].map(|v| seen(owner, v));
         let radii = if edge { other.radius } else { own.radius.wrapping_add(other.radius) };
         let mut line = Line {

@@ -59,16 +59,14 @@ pub(crate) struct Motion {
 /// * Deeper than that along every axis, be it at time 0 or because they closed too slowly to count, they touch no more.
 /// * A pair that stays undecided for [`PATIENCE`] rounds touches at [`NEAR`]; see [`ROUNDS`].
 ///
-/// `placed`: the outlines as they are turned at time 0. `clearance` is told how far apart they are when that is looked at first.
+/// `clearance` is told how far apart they are when that is looked at first.
 ///
 /// Range: vertices to 39 100 m; speeds to 8192 m and 4096 rad a tick, limited beyond; rims to 2184 m a tick, far beyond
 /// which times may be late. Without allocation; 6 ns where boxes around the ways are apart, 0.2 µs where discs are,
 /// else 0.3 µs to 0.6 µs a round.
-#[allow(clippy::too_many_arguments, reason = "what moves, and what is asked of it")]
 pub(crate) fn first_touch(
     a: &Outline,
     b: &Outline,
-    placed: [&Placed; 2],
     motion: &Motion,
     until: i64,
     closing: i64,
@@ -89,18 +87,12 @@ pub(crate) fn first_touch(
     let touch = mul(TOUCH, a.reach.max(b.reach).max(4 << 32), 34);
     let mut terms = Terms { touch, tolerance: touch, closing, slack: slack.clamp(0, 1 << 40).wrapping_shl(6) };
     let path = Path::new([a, b], &motion, until);
-    let mut time = path.before([a, b], placed, touch, clearance)?;
-    let mut moved = [Placed::default(), Placed::default()];
+    let mut time = path.before([a, b], touch, clearance)?;
+    let mut moment = path.at([a, b], time);
     for round in 0..ROUNDS {
         if round == PATIENCE {
             terms.tolerance = terms.tolerance.max(NEAR);
         }
-        if time > 0 {
-            path.turn([a, b], time, &mut moved);
-        }
-        let now = |body: usize| if time > 0 && path.turning[body] { &moved[body] } else { placed[body] };
-        let mut moment = Moment::new(&path, [now(0), now(1)], path.turning);
-        moment.set(&path, time);
         let mut axes = moment.axes();
         let (widest, separation) = moment.separation(&mut axes);
         if round == 0 {
@@ -113,6 +105,7 @@ pub(crate) fn first_touch(
             Look::Apart(separation, 0) => terms.tolerance = separation,
             Look::Apart(_, step) | Look::Held(step) => {
                 time = time.saturating_add(step);
+                path.go([a, b], time, &mut moment);
             }
         }
     }
@@ -203,14 +196,13 @@ impl Path {
         [0, 1].map(|body| self.motion.angle[body].wrapping_add(turned(body)))
     }
 
+    /// A body's outline at a time.
+    fn placed(&self, outline: &Outline, body: usize, time: i64) -> Placed {
+        Placed::new(outline, Rot::new(Angle::from_bits(self.angles(time)[body])))
+    }
+
     /// A time before which they cannot touch, found from the discs in which outlines turn; none if they never can.
-    fn before(
-        &self,
-        outlines: [&Outline; 2],
-        placed: [&Placed; 2],
-        touch: i64,
-        clearance: &mut Clearance,
-    ) -> Option<i64> {
+    fn before(&self, outlines: [&Outline; 2], touch: i64, clearance: &mut Clearance) -> Option<i64> {
         let mut time = 0_i64;
         let reach = i128::from(outlines[0].reach.saturating_add(outlines[1].reach));
         let overlap = || inner(self.motion.d, self.motion.d) <= reach.wrapping_mul(reach);
@@ -218,9 +210,8 @@ impl Path {
             return Some(time);
         }
         let disc = |body: usize| Placed { count: 1, radius: outlines[body].reach, ..Placed::default() };
-        let discs = [disc(0), disc(1)];
-        let hull = |body: usize| if self.turning[body] { &discs[body] } else { placed[body] };
-        let mut moment = Moment::new(self, [hull(0), hull(1)], [false; 2]);
+        let hull = |body: usize| if self.turning[body] { disc(body) } else { self.placed(outlines[body], body, 0) };
+        let mut moment = Moment { placed: [hull(0), hull(1)], ..Moment::new(self) };
         for _ in 0..2 {
             moment.set(self, time);
             let mut axes = moment.axes();
@@ -228,7 +219,7 @@ impl Path {
             if separation <= touch {
                 break;
             }
-            match moment.advance(&mut axes, widest, separation) {
+            match moment.advance(&mut axes, separation) {
                 NEVER => {
                     // A disc is the same however it turns.
                     let arms = [0, 1].map(|body: usize| if self.turning[body] { 0 } else { self.arms[body] });
@@ -241,50 +232,49 @@ impl Path {
         Some(time)
     }
 
-    /// Places what turns as it is at a time.
-    fn turn(&self, outlines: [&Outline; 2], time: i64, placed: &mut [Placed; 2]) {
-        let angles = self.angles(time);
-        for body in (0..2).filter(|&body| self.turning[body]) {
-            placed[body] = Placed::new(outlines[body], Rot::new(Angle::from_bits(angles[body])));
+    /// The bodies at a time.
+    fn at(&self, outlines: [&Outline; 2], time: i64) -> Moment {
+        let mut moment = Moment { turning: self.turning, ..Moment::new(self) };
+        for (body, outline) in outlines.into_iter().enumerate() {
+            moment.placed[body] = self.placed(outline, body, time);
         }
+        moment.set(self, time);
+        moment
+    }
+
+    /// On to a time: what turns is placed anew.
+    fn go(&self, outlines: [&Outline; 2], time: i64, moment: &mut Moment) {
+        for (body, outline) in outlines.into_iter().enumerate() {
+            if self.turning[body] {
+                moment.placed[body] = self.placed(outline, body, time);
+            }
+        }
+        moment.set(self, time);
     }
 }
 
-impl Moment<'_> {
-    /// How long they cannot touch, being apart. Axes of much less separation than the greatest are left out. The widest
-    /// comes first: it tells most often that they never do, and else how long another axis has to last to say more.
-    fn advance(&self, axes: &mut Axes, widest: usize, separation: i64) -> i64 {
+impl Moment {
+    /// How long they cannot touch, being apart. Axes of much less separation than the greatest are left out.
+    fn advance(&self, axes: &mut Axes, separation: i64) -> i64 {
         let least = separation.wrapping_mul(5) >> 4;
         let mut step = 0;
-        for index in axes.from(widest) {
+        for index in 0..axes.count {
             if self.apart(axes, index, least).is_some() {
-                step = self.first(axes, index, step).max(step);
-            }
-            if step == NEVER {
-                break;
+                let Some((line, vertices)) = self.line(axes, index) else { continue };
+                let mut first = NEVER;
+                for &q in vertices {
+                    first = first.min(line.course(q).end(self.rest.min(first)));
+                }
+                step = step.max(first);
             }
         }
         step
     }
 
-    /// When the first vertex may come down to an axis; anything not later than `known` if that is not later.
-    fn first(&self, axes: &Axes, index: usize, known: i64) -> i64 {
-        let Some((line, vertices)) = self.line(axes, index) else { return 0 };
-        let mut first = NEVER;
-        for &q in vertices {
-            let course = line.course(q);
-            if first <= known || course.is_down(known) {
-                return known;
-            }
-            first = first.min(course.end(self.rest.min(first)));
-        }
-        first
-    }
-
     /// Whether they touch and close; if not, how long they cannot.
     fn look(&self, axes: &mut Axes, widest: usize, separation: i64, terms: &Terms) -> Look {
         if separation > terms.tolerance {
-            return match self.advance(axes, widest, separation) {
+            return match self.advance(axes, separation) {
                 NEVER => Look::Never,
                 step => Look::Apart(separation, step),
             };
@@ -296,7 +286,7 @@ impl Moment<'_> {
         }
         let toward = self.axis(axes, widest).map_or([0; 2], |axis| axis.outward());
         let mut held = None;
-        for index in axes.from(widest) {
+        for index in 0..axes.count {
             if let Some(overlap) = self.apart(axes, index, deep) {
                 // The far side of what is thin is no side to leave by.
                 let behind = overlap < terms.tolerance.wrapping_neg() && self.is_behind(axes, index, toward);
@@ -304,13 +294,15 @@ impl Moment<'_> {
                     continue;
                 }
                 let Some((line, vertices)) = self.line(axes, index) else { continue };
-                held = held.max(self.wait(&line, vertices, terms, band));
-                if held > Some(self.rest) {
-                    return Look::Never;
-                }
+                let wait = self.wait(&line, vertices, terms, band);
+                held = held.max(wait);
             }
         }
-        held.map_or(Look::Touch, |step| Look::Held(step.max(1)))
+        match held {
+            None => Look::Touch,
+            Some(step) if step > self.rest => Look::Never,
+            Some(step) => Look::Held(step.max(1)),
+        }
     }
 
     /// Whether an axis points against a direction from a to b.

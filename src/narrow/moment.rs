@@ -10,8 +10,8 @@ use crate::num::mul;
 use crate::shape::Placed;
 
 /// The bodies at a time.
-pub(super) struct Moment<'p> {
-    pub(super) placed: [&'p Placed; 2],
+pub(super) struct Moment {
+    pub(super) placed: [Placed; 2],
     pub(super) turning: [bool; 2],
     pub(super) arms: [i64; 2],
     /// As in [`Motion`], now; `a` and `alpha` do not change.
@@ -71,13 +71,12 @@ pub(super) fn way(v: i64, a: i64, time: i64, shift: u32) -> i64 {
     mul(v.wrapping_add(mul(a, time, 33)), time, shift)
 }
 
-impl<'p> Moment<'p> {
-    /// At no time yet, of outlines that are placed.
-    #[inline]
-    pub(super) fn new(path: &Path, placed: [&'p Placed; 2], turning: [bool; 2]) -> Self {
+impl Moment {
+    /// At no time yet, and of nothing that turns.
+    pub(super) fn new(path: &Path) -> Moment {
         Moment {
-            placed,
-            turning,
+            placed: [Placed::default(), Placed::default()],
+            turning: [false; 2],
             arms: path.arms,
             d: [0; 2],
             v: [0; 2],
@@ -124,7 +123,7 @@ impl<'p> Moment<'p> {
             if count == 0 {
                 continue;
             }
-            let (own, other) = (self.placed[owner], self.placed[1 ^ owner]);
+            let (own, other) = (&self.placed[owner], &self.placed[1 ^ owner]);
             // A point in the other polygon is no lower than its lowest vertex; two units for rounding.
             let half = usize::from(other.count / 2);
             let middle = sum(other.vertices[0], other.vertices[half]).map(|c| c >> 1);
@@ -142,7 +141,7 @@ impl<'p> Moment<'p> {
     /// The direction from a circle's centre to the nearest vertex of the other, if that is what it is nearest to.
     fn radial(&self, axes: &mut Axes) {
         let owner = usize::from(axes.edges[0] > 0);
-        let (own, other) = (self.placed[owner], self.placed[1 ^ owner]);
+        let (own, other) = (&self.placed[owner], &self.placed[1 ^ owner]);
         if own.count > 1 {
             return;
         }
@@ -172,7 +171,7 @@ impl<'p> Moment<'p> {
         if edge >= axes.edges[owner] {
             return axes.radial;
         }
-        let own = self.placed[owner];
+        let own = &self.placed[owner];
         Some(Axis { normal: own.normals[edge], owner, from: own.vertices[edge], edge: true })
     }
 
@@ -191,7 +190,7 @@ impl<'p> Moment<'p> {
     /// Finds the nearest vertex along an axis (ties: lower index).
     fn settle(&self, axes: &mut Axes, index: usize) {
         let Some(Axis { normal, owner, from, edge }) = self.axis(axes, index) else { return };
-        let (own, other) = (self.placed[owner], self.placed[1 ^ owner]);
+        let (own, other) = (&self.placed[owner], &self.placed[1 ^ owner]);
         let shift = difference(seen(owner, self.d), from);
         let (mut nearest, mut lowest) = (0, i64::MAX);
         for (vertex, &q) in other.vertices[..usize::from(other.count)].iter().enumerate() {
@@ -215,11 +214,6 @@ impl<'p> Moment<'p> {
 }
 
 impl Axes {
-    /// The places of all axes, that of the widest first.
-    pub(super) fn from(&self, widest: usize) -> impl Iterator<Item = usize> + use<> {
-        core::iter::once(widest).chain((0..self.count).filter(move |&index| index != widest))
-    }
-
     /// Adds an axis of at most this separation.
     fn push(&mut self, limit: i64) {
         if let Some(free) = self.limits.get_mut(self.count) {

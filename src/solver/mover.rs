@@ -148,7 +148,7 @@ impl Movers {
         let gone = |axis: usize| over(now.x[axis].saturating_sub(begin.x[axis]), scales.line, 51u32.saturating_sub(k));
         let rolled = mul(now.angle.saturating_sub(begin.angle), mobility.sigma, k.saturating_add(30));
         // A rim may have gone farther than `go` can say, by far: then it stands at the end of what positions hold, and stays there.
-        let most = div(1 << 62, scales.coarse.into()) as i64;
+        let most = div((1 << 63) - (1 << 60), scales.coarse.into()) as i64;
         let rolled = lane::clamp(over(rolled, scales.turn, 33), most.saturating_neg(), most);
         course.sum = [gone(0), gone(1), rolled];
         (course.pushed, course.hit) = (true, true);

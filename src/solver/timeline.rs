@@ -9,11 +9,9 @@
 
 mod answer;
 mod astray;
-mod foresee;
 mod neighbours;
-mod poses;
 
-use super::flight::{Flights, NONE, Past, State, TICK};
+use super::flight::{Flight, Flights, NONE, Past, State, TICK, motion};
 use super::mobility::Mobility;
 use super::mover::Movers;
 use super::rows::{Block, LANES};
@@ -21,12 +19,10 @@ use super::scales::Scales;
 use super::strike::{ONE, Speed, Strike, Weight};
 use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Touch};
-use crate::geom::Aabb;
 use crate::motion::{Drive, Fault};
-use crate::narrow::{Clearance, Manifold};
-use crate::num::lane::next;
+use crate::narrow::{Clearance, Manifold, first_touch};
+use crate::num::{lane::next, mul};
 use core::cmp::Reverse;
-use poses::Poses;
 use std::collections::BinaryHeap;
 
 /// Impacts within this of each other are one: 16 ns at 60 ticks/s, Q32 of a tick. Positions are rounded every tick, and
@@ -93,13 +89,6 @@ const NEVER: i64 = i64::MAX;
 /// As a place among the pairs of the tick: one of those that were not among them.
 const LATE: u32 = u32::MAX - 1;
 
-/// A body that left its free way, and the box around its way since: side by side, because each impact looks at all of them.
-#[derive(Clone, Copy, Debug)]
-struct Struck {
-    slot: u32,
-    around: Aabb,
-}
-
 /// What stays the same while impacts are answered.
 pub(crate) struct Stage<'s> {
     pub(crate) bodies: &'s Bodies,
@@ -151,8 +140,8 @@ pub(crate) struct Timeline {
     from: i64,
     engaged: Vec<Engaged>,
     queue: BinaryHeap<Reverse<(i64, u32, u32, u32)>>,
-    /// The flights that were struck, or that rows sent astray.
-    struck: Vec<Struck>,
+    /// Places of flights that were struck, or that rows sent astray.
+    struck: Vec<u32>,
     /// Pairs that were not among those of the tick and met: colliders, bodies.
     pub(crate) late: Vec<[[u32; 2]; 2]>,
     /// Places of those of the tick that met.
@@ -176,7 +165,6 @@ pub(crate) struct Timeline {
     members: Vec<u32>,
     strikes: Vec<Strike>,
     restitutions: Vec<i64>,
-    poses: Poses,
     found: Vec<u32>,
     known: Vec<[u32; 2]>,
 }
@@ -186,7 +174,6 @@ impl Timeline {
     pub(crate) fn clear(&mut self, slots: usize) {
         self.flights.clear(slots);
         self.engaged.clear();
-        self.poses.clear();
         self.queue.clear();
         self.struck.clear();
         self.late.clear();
@@ -203,8 +190,7 @@ impl Timeline {
         self.past.take(bodies);
     }
 
-    /// Takes a pair of the tick in, after bodies have moved freely. It is looked at although rows may yet push its bodies to other
-    /// ways: a time that is no longer theirs opens a batch all the same, so the law wants it queued.
+    /// Takes a pair of the tick in, after bodies have moved freely.
     pub(crate) fn engage(&mut self, pair: usize, stage: &Stage<'_>, movers: &Movers) {
         let of = &stage.touch.pairs[pair];
         let at = self.add(of.colliders, of.bodies, pair as u32, false, stage, movers);
@@ -251,6 +237,53 @@ impl Timeline {
             rests: false,
         });
         at
+    }
+
+    /// Looks when a pair meets, from a time on and as far as the ways of its bodies are known: to `end` if rows push one.
+    fn foresee(&mut self, at: usize, from: i64, end: i64, stage: &Stage<'_>) {
+        let scales = stage.scales;
+        let pair = &mut self.engaged[at];
+        pair.time = NEVER;
+        let [a, b] = pair.flights.map(|place| &self.flights.list[place as usize]);
+        // Who was struck too often stays, but others do not pass through it.
+        let stays = |flight: &Flight| flight.strikes >= MOST || !stage.mobilities[flight.slot as usize].moves();
+        if stays(a) && stays(b) {
+            return;
+        }
+        let strikes = a.strikes.max(b.strikes);
+        // What is passed on often, rows take: but for what is too fast for them.
+        let passed = pair.held && strikes >= PASSED_ON && pair.restitution < ONE;
+        let least = if passed {
+            pair.least.max(scales.least_strike(0, true, stage.smaller(pair.colliders)))
+        } else {
+            pair.least
+        };
+        let from = from.max(a.time).max(b.time);
+        let until = if a.pushed || b.pushed { end } else { TICK };
+        if from > until {
+            return;
+        }
+        let (p, q) = (a.at(from, scales), b.at(from, scales));
+        let motion = motion(&p, &q, [&a.gain, &b.gain], scales);
+        let rest = until.saturating_sub(from);
+        let closing = mul(least, scales.margins.tick, 71);
+        let [one, other] = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
+        if motion.fastest([one.reach, other.reach], rest) < closing || pair.clearance.lasts(&motion, rest) {
+            return;
+        }
+        let depth = pair.depth.saturating_add(DEEPER);
+        let slack = if a.place != 0 || b.place != 0 { scales.slack.max(depth) } else { depth };
+        // What closes so slowly that it is let, is not so deep when it closes faster that it is lost.
+        let slack = slack.max(mul(least.min(scales.least_settled()), scales.margins.tick, 78));
+        if let Some(after) = first_touch(one, other, &motion, rest, closing, slack, &mut pair.clearance) {
+            let time = from.saturating_add(after);
+            if time > TICK.saturating_sub(SAME) {
+                // The next tick's, so that what meets when one ends and the other begins meets at one time.
+                return;
+            }
+            pair.time = time;
+            self.queue.push(Reverse((time, pair.colliders[0], pair.colliders[1], at as u32)));
+        }
     }
 
     /// By how many times the answers of this tick exceed what a world has.

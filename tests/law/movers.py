@@ -140,7 +140,7 @@ class Movers:
         mover.begin = bounded([mover.v[axis] - mover.kick[axis] for axis in range(3)])
         mover.sum = [div(now.x[axis] - begin.x[axis] << 51 - k, scales.line) for axis in (0, 1)]
         rolled = mul(now.angle - begin.angle, mover.mobility.sigma, k + 30)
-        most = div(1 << 62, scales.coarse)
+        most = div((1 << 63) - (1 << 60), scales.coarse)
         mover.sum.append(max(-most, min(most, div(rolled << 33, scales.turn))))
         mover.pushed = mover.hit = True
         mover.go(scales)

@@ -92,9 +92,7 @@ pub(super) fn gap(pair: [&Outline; 2], motion: &Motion, time: i64) -> i64 {
 }
 
 fn first_touch(a: &Outline, b: &Outline, motion: &Motion, until: i64, closing: i64, slack: i64) -> Option<i64> {
-    let placed = [(a, 0), (b, 1)]
-        .map(|(of, body): (&Outline, usize)| Placed::new(of, Rot::new(Angle::from_bits(motion.angle[body]))));
-    crate::narrow::first_touch(a, b, [&placed[0], &placed[1]], motion, until, closing, slack, &mut Clearance::default())
+    crate::narrow::first_touch(a, b, motion, until, closing, slack, &mut Clearance::default())
 }
 
 /// The same by exchange and by half a turn.

@@ -4,9 +4,7 @@ use super::super::flight::{Flight, NONE, State, rim};
 use super::super::mover::Movers;
 use super::super::scales::weight;
 use super::super::strike::{LIMIT, ONE, Strike, solve};
-use super::{
-    AGAIN, Engaged, FLAT, LATE, LATER, LEAP, MANY, MOST, NEVER, OFTEN, Poses, REACH, Settled, Stage, Timeline,
-};
+use super::{AGAIN, Engaged, FLAT, LATE, LATER, LEAP, MANY, MOST, NEVER, OFTEN, REACH, Settled, Stage, Timeline};
 use crate::contact::{Collision, Pace};
 use crate::geom::{Rot, Vec2};
 use crate::motion::{Bound, Fault};
@@ -58,8 +56,9 @@ impl Timeline {
         }
         self.rest(stage);
         self.locals.retain(|&place| self.flights.list[place as usize].changed);
-        for at in 0..self.locals.len() {
-            self.surround(self.locals[at], stage);
+        for &place in &self.locals {
+            let flight = &mut self.flights.list[place as usize];
+            flight.surround(stage.mobilities[flight.slot as usize].reach, stage.scales);
         }
         for at in 0..self.locals.len() {
             self.meet_again(self.locals[at] as usize, time, span[1], stage, movers);
@@ -146,7 +145,7 @@ impl Timeline {
         let bodies = places.map(|place| self.local(place, time, stage));
         let pair = &mut self.engaged[at as usize];
         let [a, b] = places.map(|place| &self.flights.list[place as usize]);
-        let (manifold, between) = touching(pair, a, b, stage, &mut self.poses)?;
+        let (manifold, between) = touching(pair, a, b, stage)?;
         // What closes hundreds of times in a tick gets deeper by half of what touching is each time.
         let overlap = |point: &Point| point.separation.saturating_neg();
         pair.depth = manifold.points.iter().map(overlap).fold(pair.depth, i64::max);
@@ -210,6 +209,10 @@ impl Timeline {
             return;
         }
         flight.changed = true;
+        if !flight.aside {
+            self.struck.push(place);
+        }
+        flight.aside = true;
         flight.strikes = flight.strikes.saturating_add(1);
         let bound = |speed: &i64| speed.unsigned_abs() >= LIMIT.unsigned_abs();
         if self.speeds[at].iter().any(bound) {
@@ -232,7 +235,6 @@ impl Timeline {
         }
         *omega = add_sat(*omega, mobility.over_sigma(change[2], 48u32.saturating_sub(k), 48));
         movers.strike(flight.place, change, to.saturating_sub(time), stage.scales);
-        self.set_aside(place);
     }
 
     /// Tells what happened.
@@ -367,19 +369,14 @@ fn pace(state: &State) -> Pace {
 }
 
 /// Where a pair touches: its manifold, and the way from a's centre to b's.
-fn touching(
-    pair: &Engaged,
-    a: &Flight,
-    b: &Flight,
-    stage: &Stage<'_>,
-    poses: &mut Poses,
-) -> Option<(Manifold, [i64; 2])> {
+fn touching(pair: &Engaged, a: &Flight, b: &Flight, stage: &Stage<'_>) -> Option<(Manifold, [i64; 2])> {
     let outlines = pair.colliders.map(|slot| stage.colliders.outline(slot as usize));
-    let placed = poses.of(pair.colliders, outlines, [a.state.angle, b.state.angle]);
+    let placed = [(outlines[0], a), (outlines[1], b)]
+        .map(|(outline, flight)| Placed::new(outline, Rot::new(Angle::from_bits(flight.state.angle))));
     let between = [0, 1].map(|axis: usize| b.state.x[axis].saturating_sub(a.state.x[axis]));
     let size = (outlines[0].reach.max(outlines[1].reach) >> 34).saturating_add(1);
     let reach = REACH.saturating_mul(size);
-    let manifold = collide(placed[0], placed[1], between, reach.saturating_add(FLAT));
+    let manifold = collide(&placed[0], &placed[1], between, reach.saturating_add(FLAT));
     let near = manifold.points[..manifold.count as usize].iter().any(|point| point.separation <= reach);
     near.then_some((manifold, between))
 }

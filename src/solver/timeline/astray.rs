@@ -18,8 +18,12 @@ impl Timeline {
             if !self.is_astray(place, to, stage, movers) {
                 continue;
             }
-            self.set_aside(place as u32);
-            self.surround(place as u32, stage);
+            let flight = &mut self.flights.list[place];
+            flight.surround(stage.mobilities[flight.slot as usize].reach, stage.scales);
+            if !flight.aside {
+                flight.aside = true;
+                self.struck.push(place as u32);
+            }
             // Whom rows hold it against, they know.
             self.find_again(place, stage, movers, |_, _, _| true);
         }
@@ -32,7 +36,7 @@ impl Timeline {
         if !flight.pushed || !stage.mobilities[slot].moves() {
             return false;
         }
-        if flight.aside != 0 {
+        if flight.aside {
             let reach = stage.mobilities[slot].reach;
             return !flight.around.contains(&flight.box_at(to, reach, scales));
         }

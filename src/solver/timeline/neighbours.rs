@@ -2,29 +2,11 @@
 
 use super::super::flight::{Flight, NONE, State};
 use super::super::mover::Movers;
-use super::{Engaged, Stage, Struck, Timeline};
+use super::{Engaged, Stage, Timeline};
 use crate::geom::Aabb;
 use crate::num::mul;
 
 impl Timeline {
-    /// Notes that a flight left its free way.
-    pub(super) fn set_aside(&mut self, place: u32) {
-        let flight = &mut self.flights.list[place as usize];
-        if flight.aside == 0 {
-            self.struck.push(Struck { slot: flight.slot, around: flight.around });
-            flight.aside = self.struck.len() as u32;
-        }
-    }
-
-    /// Notes the box around the way of a flight that did.
-    pub(super) fn surround(&mut self, place: u32, stage: &Stage<'_>) {
-        let flight = &mut self.flights.list[place as usize];
-        flight.surround(stage.mobilities[flight.slot as usize].reach, stage.scales);
-        if let Some(struck) = self.struck.get_mut((flight.aside as usize).wrapping_sub(1)) {
-            struck.around = flight.around;
-        }
-    }
-
     /// A body that was struck goes another way: whom it may meet there.
     pub(super) fn meet_again(&mut self, place: usize, time: i64, to: i64, stage: &Stage<'_>, movers: &Movers) {
         self.find_again(place, stage, movers, |timeline, bodies, pair| timeline.is_slow(bodies, pair, stage));
@@ -44,7 +26,8 @@ impl Timeline {
         let (mut found, mut known) = (core::mem::take(&mut self.found), core::mem::take(&mut self.known));
         found.clear();
         touch.around(&around, |collider| found.push(collider));
-        for &Struck { slot, around: other } in &self.struck {
+        for &other in &self.struck {
+            let Flight { slot, around: other, .. } = self.flights.list[other as usize];
             if other.overlaps(&around) {
                 found.extend(colliders.list(bodies.cold.value(slot as usize).first).map(|at| at as u32));
             }
@@ -56,7 +39,7 @@ impl Timeline {
             for &other in &found {
                 let (a, b) = (other.min(own as u32), other.max(own as u32));
                 // Exactly, so that what the broad phase hands out besides of what moves has no say.
-                if a == b || known.contains(&[a, b]) || !self.way(other, stage).overlaps(&around) {
+                if a == b || !self.way(other, stage).overlaps(&around) || known.contains(&[a, b]) {
                     continue;
                 }
                 let (pair, held) = touch.pair_of([a, b]);
@@ -91,7 +74,7 @@ impl Timeline {
     fn way(&self, collider: u32, stage: &Stage<'_>) -> Aabb {
         let body = stage.colliders.rows.value(collider as usize).body as usize;
         match self.flights.known(body) {
-            Some(flight) if flight.aside != 0 => flight.around,
+            Some(flight) if flight.aside => flight.around,
             _ => {
                 let (State { x, v, .. }, margins) = (self.past.state(body), stage.scales.margins);
                 stage.touch.way(collider as usize, x, v, stage.drive.gain(body, margins.tick), margins)
