@@ -298,11 +298,8 @@ impl Bodies {
         mul(omega, reach, 32) <= speed
     }
 
-    /// Keeps what of the bodies that are awake a step changes, if somebody sleeps and it may have to be taken back.
+    /// Keeps what of the bodies that are awake a step changes.
     pub(crate) fn remember(&self, copy: &mut Vec<i64>) {
-        if !self.rest.any_asleep() {
-            return;
-        }
         let Bodies { cold: _, rest, x, y, vx, vy, angle, omega } = self;
         copy.clear();
         for column in [x.bits(), y.bits(), vx.bits(), vy.bits(), angle.bits(), omega.bits()] {

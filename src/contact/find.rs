@@ -53,9 +53,14 @@ pub(crate) struct Pair {
     /// C_R and the coefficient of friction of the two, Q48.
     pub(crate) restitution: i64,
     pub(crate) friction: i64,
+    /// Whether the manifold was known from an earlier tick. Nothing but memories may ask.
+    pub(crate) known: bool,
+    /// Whether its bodies end the tick as they began it: then its contact does, too.
+    pub(crate) stays: bool,
 }
 
-crate::store::show!(Pair { colliders, bodies, sensor, manifold, old, row, depth, met, restitution, friction });
+crate::store::show!(Pair { colliders, bodies, sensor, manifold, old, row, depth, met, restitution, friction, stays }
+    apart { known });
 
 impl Pair {
     fn new(slots: [u32; 2], [a, b]: [&Proxy; 2], manifold: Manifold, old: u32) -> Pair {
@@ -70,6 +75,8 @@ impl Pair {
             met: false,
             restitution: a.restitution.combine(b.restitution).to_bits(),
             friction: a.friction.combine(b.friction).to_bits(),
+            known: false,
+            stays: false,
         }
     }
 
@@ -194,13 +201,14 @@ impl Touch {
             let Some(manifold) = seen.meet(look) else {
                 continue;
             };
+            let known = look.tick < self.proxies.now();
             let proxies = slots.map(|slot| self.proxies.get(slot));
             while old < contacts.len() && contacts.key(old) < (a, b) {
                 old = old.saturating_add(1);
             }
-            let known = old < contacts.len() && contacts.ids(old) == (proxies[0].id, proxies[1].id);
-            let old = if known { old as u32 } else { NEW };
-            self.pairs.push(Pair::new([a, b], proxies, manifold, old));
+            let lasts = old < contacts.len() && contacts.ids(old) == (proxies[0].id, proxies[1].id);
+            let old = if lasts { old as u32 } else { NEW };
+            self.pairs.push(Pair { known, ..Pair::new([a, b], proxies, manifold, old) });
         }
         self.looks.end();
     }
@@ -305,6 +313,8 @@ impl Touch {
             let (a, b) = (colliders.id(a as usize), colliders.id(b as usize));
             let contact = if pair.sensor {
                 Contact { a, b, touching: true, sensor: true, ..Contact::default() }
+            } else if pair.stays {
+                before
             } else {
                 Contact { a, b, ..outcome(pair) }
             };

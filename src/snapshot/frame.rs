@@ -207,6 +207,7 @@ impl World {
         self.tick = *tick;
         self.events.clear();
         self.solver.forget_collisions();
+        self.solver.repose.clear();
         self.resting.found = changed;
     }
 

@@ -121,7 +121,7 @@ fn moving([a, b]: [u32; 2], free: &[bool]) -> u32 {
 }
 
 /// The body that stands for an island; paths to it get shorter.
-fn leader_of(leader: &mut [u32], mut place: u32) -> u32 {
+pub(super) fn leader_of(leader: &mut [u32], mut place: u32) -> u32 {
     while leader[place as usize] != place {
         let up = leader[leader[place as usize] as usize];
         leader[place as usize] = up;

@@ -19,6 +19,7 @@ mod kernel;
 mod mobility;
 mod mover;
 mod prepare;
+mod repose;
 mod rows;
 mod scales;
 mod show;
@@ -47,6 +48,7 @@ use kernel::Kernel;
 pub(crate) use mobility::Mobility;
 use mover::Movers;
 use prepare::{Basis, Joint};
+pub(crate) use repose::Repose;
 
 use rows::{Block, LANES};
 pub(crate) use scales::Scales;
@@ -90,6 +92,7 @@ pub(crate) struct Solver {
     colors: Colors,
     blocks: Vec<Block>,
     kernel: Kernel,
+    pub(crate) repose: Repose,
 }
 
 impl Clone for Solver {
@@ -101,6 +104,7 @@ impl Clone for Solver {
         self.mobilities.clone_from(&source.mobilities);
         self.scales = source.scales;
         self.timeline.collisions.clear();
+        self.repose.clear();
     }
 }
 
@@ -128,8 +132,11 @@ impl Solver {
             colors,
             blocks,
             kernel,
+            repose,
         } = self;
+        repose.confirm(&mut touch.pairs, bodies, drive);
         movers.clear(bodies.cold.len());
+        movers.others = !repose.is_empty();
         timeline.clear(bodies.cold.len());
         places.clear();
         rows.clear();
@@ -139,7 +146,7 @@ impl Solver {
         squeezed.clear();
         fast.clear();
         turning.clear();
-        for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !pair.sensor) {
+        for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !(pair.sensor || pair.stays)) {
             let swings = || swings(pair, bodies, drive, mobilities, scales);
             if pair.manifold.count == 0 || strikes(pair, bodies, drive, scales, false) || swings() {
                 fast.push(at as u32);
@@ -166,7 +173,7 @@ impl Solver {
         }
         // Without a hard contact nobody asks for votes.
         let mut any_hard = false;
-        for (at, pair) in touch.pairs.iter_mut().enumerate().filter(|(_, pair)| pair.manifold.count > 0) {
+        for (at, pair) in touch.pairs.iter_mut().enumerate().filter(|(_, pair)| pair.manifold.count > 0 && !pair.stays) {
             pair.row = places.len() as u32;
             // All that move have one by now.
             places.push(pair.bodies.map(|slot| movers.place_of(slot)));
@@ -233,13 +240,14 @@ impl Solver {
             colors,
             blocks,
             kernel,
+            repose,
             ..
         } = self;
-        let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[] };
+        let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[], repose };
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
         }
-        if blocks.is_empty() {
+        if movers.is_empty() {
             timeline.run([0, TICK], &stage, movers, faults);
         } else {
             movers.take_kicks(bodies, mobilities, scales);
@@ -266,7 +274,7 @@ impl Solver {
                 movers.hold_back(mobilities);
                 movers.drift(scales);
                 let seats = &colors.seats;
-                let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats, blocks };
+                let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats, blocks, repose };
                 timeline.run(scales.span(substep), &stage, movers, faults);
                 for pair in timeline.retired.drain(..) {
                     let seat = colors.seats[touch.pairs[pair as usize].row as usize] as usize;
@@ -317,7 +325,15 @@ impl Solver {
         for &pair in &timeline.met {
             touch.pairs[pair as usize].met = true;
         }
+        repose.put_back(bodies);
         touch.join(&mut timeline.late, contacts);
+        let lasting = !movers.brisk && drive.sources.is_empty();
+        self.settle(&mut touch.pairs, contacts, bodies, drive, lasting);
+    }
+
+    /// Whether the tick may have moved what was left out of it: then it is to be computed again, with that.
+    pub(crate) fn disturbs(&self) -> bool {
+        self.timeline.disturbs
     }
 
     /// The slots of bodies that contacts moved in this tick by more than a speed (Q48 m/s) would: where overlaps are pushed

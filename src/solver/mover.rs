@@ -71,6 +71,8 @@ pub(crate) struct Movers {
     pub(crate) brisk: bool,
     /// Whether one of them may turn so fast that its rows must be made anew.
     pub(crate) turns: bool,
+    /// Whether there are bodies of which it is known what their rows would do.
+    pub(crate) others: bool,
     pub(super) squeeze: Squeeze,
 }
 
@@ -85,7 +87,7 @@ impl Movers {
         self.places.resize(slots, 0);
         self.lanes.clear();
         self.courses.clear();
-        (self.brisk, self.turns) = (false, false);
+        (self.brisk, self.turns, self.others) = (false, false, false);
         self.lanes.push(Mover::default());
         self.courses.push(Course { slot: u32::MAX, ..Course::default() });
     }
@@ -220,6 +222,12 @@ impl Movers {
         self.places.get(slot as usize).copied().unwrap_or(0)
     }
 
+    /// Whether rows leave it slower than this, Q48.
+    pub(crate) fn is_slower(&self, place: usize, least: u64) -> bool {
+        let mover = &self.lanes[place];
+        [mover.v[0], mover.v[1], mover.w].iter().all(|v| v.unsigned_abs() <= least)
+    }
+
     /// The slot of the body at a place other than 0.
     pub(crate) fn slot(&self, place: u32) -> usize {
         self.courses[place as usize].slot as usize
@@ -326,7 +334,7 @@ impl Movers {
 
     /// Whether rows know of no body.
     pub(crate) fn is_empty(&self) -> bool {
-        self.lanes.len() < 2
+        self.lanes.len() < 2 && !self.others
     }
 
     /// What rows keep of each, for those that joined.

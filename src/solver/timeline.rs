@@ -14,6 +14,7 @@ mod neighbours;
 use super::flight::{Flight, Flights, NONE, Past, State, TICK, motion};
 use super::mobility::Mobility;
 use super::mover::Movers;
+use super::repose::Repose;
 use super::rows::{Block, LANES};
 use super::scales::Scales;
 use super::strike::{ONE, Speed, Strike, Weight};
@@ -99,6 +100,7 @@ pub(crate) struct Stage<'s> {
     pub(crate) scales: &'s Scales,
     pub(crate) seats: &'s [u32],
     pub(crate) blocks: &'s [Block],
+    pub(crate) repose: &'s Repose,
 }
 
 impl Stage<'_> {
@@ -154,6 +156,8 @@ pub(crate) struct Timeline {
     /// What happened, and how many answers there were.
     pub(crate) collisions: Vec<Collision>,
     order: u32,
+    /// Whether one may be struck of which it was said that it ends the tick as it began it: then it is to be computed.
+    pub(crate) disturbs: bool,
     // Space for one answer: pairs that meet, and those of one answer; places of their flights, how fast these are, and were; contacts.
     batch: Vec<(i64, u32)>,
     group: Vec<u32>,
@@ -182,7 +186,7 @@ impl Timeline {
         self.settling.clear();
         self.settled.clear();
         self.collisions.clear();
-        self.order = 0;
+        (self.order, self.disturbs) = (0, false);
     }
 
     /// While bodies are where the tick begins, and some pair may meet in it.
@@ -365,6 +369,7 @@ impl Timeline {
         let known = self.flights.list.len();
         let place = self.flights.place(slot, &self.past, stage.bodies, movers);
         if place as usize == known {
+            self.disturbs |= stage.repose.holds(slot);
             self.push(known, stage, movers);
         }
         place

@@ -199,6 +199,7 @@ impl World {
         self.drive.set(slot, driven, self.config.gravity, None);
         self.solver.mobilities.resize(slots, Mobility::default());
         self.solver.mobilities[slot] = Mobility::new(data);
+        self.solver.repose.forget(slot);
     }
 
     /// Tells the broad phase where a body's colliders are, after a command has put them there.

@@ -9,6 +9,9 @@ use crate::solver::Substep;
 
 /// Who looks at a tick from inside.
 pub(crate) trait Watch {
+    /// Whether it does look.
+    const LOOKS: bool = true;
+
     /// After each stage. May do anything to the world: a fault, in tests.
     fn stage(&mut self, stage: Stage, world: &mut World);
 
@@ -20,6 +23,8 @@ pub(crate) trait Watch {
 struct Nobody;
 
 impl Watch for Nobody {
+    const LOOKS: bool = false;
+
     #[inline(always)]
     fn stage(&mut self, _: Stage, _: &mut World) {}
 }
@@ -55,12 +60,17 @@ impl World {
     }
 
     /// The stages of a tick, in order.
-    pub(crate) fn step_through(&mut self, watch: &mut impl Watch) {
+    pub(crate) fn step_through<W: Watch>(&mut self, watch: &mut W) {
         self.begin_forces();
         watch.stage(Stage::Forces, self);
         self.sort_sleepers();
         watch.stage(Stage::Sort, self);
-        for attempt in 0.. {
+        if W::LOOKS {
+            // All is to be seen.
+            self.solver.repose.clear();
+        }
+        let mut attempt = 0;
+        loop {
             self.find_pairs();
             watch.stage(Stage::Find, self);
             self.prepare_rows();
@@ -69,10 +79,14 @@ impl World {
             watch.stage(Stage::Integrate, self);
             self.solve_contacts(watch);
             watch.stage(Stage::Solve, self);
-            // A tick that touches what sleeps is computed anew, with that awake.
+            // A tick that may touch what it left out is computed anew, with that; one that touches what sleeps, with that awake.
+            if self.take_back_disturbed() {
+                continue;
+            }
             if !self.wake_touched(attempt) {
                 break;
             }
+            attempt = attempt.saturating_add(1);
             watch.stage(Stage::Wake, self);
         }
         self.keep_contacts();
@@ -113,14 +127,29 @@ impl World {
 
     /// Every body as if nothing touched it.
     fn integrate_freely(&mut self) {
-        let World { bodies, resting, drive, faults, .. } = self;
-        bodies.remember(&mut resting.before);
+        let World { bodies, resting, drive, solver, faults, .. } = self;
+        // Who sleeps, or is left as he is, may be touched: then the tick is taken back.
+        if bodies.rest.any_asleep() || !solver.repose.is_empty() {
+            bodies.remember(&mut resting.before);
+        }
         integrate(bodies, drive, faults);
     }
 
     fn solve_contacts(&mut self, watch: &mut impl Watch) {
         let World { bodies, colliders, contacts, drive, touch, solver, faults, .. } = self;
         solver.run(touch, bodies, colliders, contacts, drive, faults, |at, substep| watch.substep(at, substep));
+    }
+
+    /// Whether the tick may have touched what it left out: then it is taken back, and leaves nothing out.
+    fn take_back_disturbed(&mut self) -> bool {
+        let World { bodies, resting, solver, faults, .. } = self;
+        let disturbs = solver.disturbs();
+        if disturbs {
+            bodies.take_back(&resting.before);
+            solver.repose.clear();
+            faults.clear();
+        }
+        disturbs
     }
 
     /// Whether the tick touched what sleeps: then it is taken back, and that is awake.

@@ -1,0 +1,285 @@
+//! Repose: islands that a tick leaves as they are.
+//!
+//! Rows leave some µm/s over, so nothing would ever come to rest exactly: a pile would tremble and creep, and cost what it costs
+//! when it moves. What hangs together by contacts, and of which no body moved in a tick or is left with more than that, ends the tick
+//! as it began it, but without velocity; its contacts keep their impulses as well. From then on each tick of it is the same one, and
+//! what is known need not be computed: as long as it lies among the same neighbours under the same forces, it gets no rows.
+//!
+//! The first is law. The second is a memory of the law's results: it may be empty at any time, and makes no difference.
+
+use super::Solver;
+use super::color::VACANT as NONE;
+use super::island::leader_of;
+use super::mover::Movers;
+use crate::body::{Bodies, BodyKind};
+use crate::contact::{Contact, Contacts, NEW, Pair};
+use crate::geom::Vec2;
+use crate::motion::Drive;
+use crate::num::{Angle, AngularVelocity, Length};
+
+/// How fast a body in repose is when rows are done with it, at most: 16·2⁻²⁰ m/s, Q48. It is what is left over by forces of 1 mm/s² that
+/// nothing answers. With 4 a pile of 1000 boxes never comes to repose; with 8 … 32 it does after 11 s, and a pyramid of 820 after 4.
+const LEAST: u64 = 16 << 28;
+
+/// The islands that are known to end a tick as they begin it. All of it is derived.
+#[derive(Debug, Default)]
+pub(crate) struct Repose {
+    members: Vec<Member>,
+    /// By slot of a body: the one that stands for its island, or [`NONE`].
+    island: Vec<u32>,
+    /// By slot of one that stands for an island: how many pairs that has, and how many of them are there in this tick; [`NONE`] if
+    /// one is another.
+    pairs: Vec<u32>,
+    found: Vec<u32>,
+    calm: Calm,
+}
+
+/// A body in repose: where it is, and what forces do to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Member {
+    slot: u32,
+    at: [i64; 3],
+    kick: [i64; 3],
+}
+
+/// The islands of a tick, by place among the movers.
+#[derive(Debug, Default)]
+struct Calm {
+    /// Whether contacts move it.
+    moves: Vec<bool>,
+    /// Another one of its island, nearer to the one that stands for it.
+    leader: Vec<u32>,
+    /// Whether it does not repose; of one that stands for an island, whether that does not.
+    up: Vec<bool>,
+    /// Of one that stands for an island: whether the next tick may be another one; how many pairs it has.
+    fresh: Vec<bool>,
+    pairs: Vec<u32>,
+}
+
+impl Member {
+    fn new(slot: usize, bodies: &Bodies, drive: &Drive) -> Member {
+        let at = [bodies.x.bits()[slot], bodies.y.bits()[slot], bodies.angle.bits()[slot]];
+        Member { slot: slot as u32, at, kick: drive.kick.each_ref().map(|column| column[slot]) }
+    }
+
+    /// Whether nothing about it has changed.
+    fn is(&self, bodies: &Bodies, drive: &Drive) -> bool {
+        let slot = self.slot as usize;
+        !moves(bodies, slot) && *self == Member::new(slot, bodies, drive)
+    }
+}
+
+impl Repose {
+    /// Knows nothing any more.
+    pub(crate) fn clear(&mut self) {
+        for member in self.members.drain(..) {
+            self.island[member.slot as usize] = NONE;
+        }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.members.is_empty()
+    }
+
+    /// Who stands for the island of a body that is known to end the tick as it begins it.
+    #[inline]
+    fn island(&self, slot: u32) -> Option<usize> {
+        self.island.get(slot as usize).filter(|&&island| island != NONE).map(|&island| island as usize)
+    }
+
+    /// Whether a body is known to end the tick as it begins it.
+    #[inline]
+    pub(crate) fn holds(&self, slot: u32) -> bool {
+        self.island(slot).is_some()
+    }
+
+    /// A command has made another one of a body: forgets its island.
+    pub(crate) fn forget(&mut self, slot: usize) {
+        if let Some(island) = self.island(slot as u32) {
+            self.found[island] = NONE;
+            self.drop_others();
+        }
+    }
+
+    /// Forgets the islands of which not all pairs were found.
+    fn drop_others(&mut self) {
+        let Repose { members, island, pairs, found, .. } = self;
+        members.retain(|member| {
+            let of = &mut island[member.slot as usize];
+            let same = found[*of as usize] == pairs[*of as usize];
+            *of = if same { *of } else { NONE };
+            same
+        });
+    }
+
+    /// When the pairs of a tick are found: forgets what is not as it was, and notes the pairs of what is.
+    pub(crate) fn confirm(&mut self, pairs: &mut [Pair], bodies: &Bodies, drive: &Drive) {
+        if self.is_empty() {
+            return;
+        }
+        let Repose { members, island, found, .. } = self;
+        for member in &*members {
+            found[island[member.slot as usize] as usize] = 0;
+        }
+        for member in members.iter().filter(|member| !member.is(bodies, drive)) {
+            found[island[member.slot as usize] as usize] = NONE;
+        }
+        for pair in pairs.iter().filter(|pair| !pair.sensor) {
+            let islands = pair.bodies.map(|slot| self.island(slot));
+            // What is of no island is what contacts do not move, and stays.
+            let stays = |at: usize| islands[at].is_some() || stays(bodies, pair.bodies[at] as usize);
+            let same = pair.known && stays(0) && stays(1) && (islands[0] == islands[1] || islands.contains(&None));
+            let other = islands[1].filter(|_| islands[1] != islands[0]);
+            for island in islands[0].into_iter().chain(other) {
+                let found = &mut self.found[island];
+                *found = if same { found.saturating_add(1) } else { NONE };
+            }
+        }
+        self.drop_others();
+        for pair in pairs.iter_mut().filter(|pair| !pair.sensor) {
+            pair.stays = pair.bodies.iter().any(|&slot| self.holds(slot));
+        }
+    }
+
+    /// Puts the bodies back that had no rows.
+    pub(crate) fn put_back(&self, bodies: &mut Bodies) {
+        for &Member { slot, at: [x, y, angle], .. } in &self.members {
+            bodies.set_position(slot as usize, Vec2::new(Length::from_bits(x), Length::from_bits(y)));
+            bodies.angle.set(slot as usize, Angle::from_bits(angle));
+            halt(bodies, slot as usize);
+        }
+    }
+
+    /// Knows the calm islands of which the next tick will be what this one was.
+    fn remember(&mut self, movers: &Movers, bodies: &Bodies, drive: &Drive) {
+        let Repose { members, island, pairs, found, calm } = self;
+        let slots = bodies.cold.len();
+        island.resize(slots, NONE);
+        pairs.resize(slots, 0);
+        found.resize(slots, 0);
+        for place in 1..calm.moves.len() {
+            let Some(leader) = calm.island(place as u32).filter(|&leader| !calm.fresh[leader]) else { continue };
+            let (slot, stands) = (movers.slot(place as u32), movers.slot(leader as u32));
+            members.push(Member::new(slot, bodies, drive));
+            (island[slot], pairs[stands]) = (stands as u32, calm.pairs[leader]);
+        }
+    }
+}
+
+impl Calm {
+    /// Who stands for the island in repose of one that contacts move.
+    fn island(&mut self, place: u32) -> Option<usize> {
+        let leader = leader_of(&mut self.leader, place) as usize;
+        (self.moves[place as usize] && !self.up[leader]).then_some(leader)
+    }
+
+    /// Each body by itself; whether any is calm.
+    fn find(&mut self, movers: &Movers, before: &[[i64; 6]], free: &[bool], bodies: &Bodies) -> bool {
+        let Calm { moves, leader, up, fresh, pairs } = self;
+        moves.clear();
+        leader.clear();
+        leader.extend(0..free.len() as u32);
+        up.clear();
+        fresh.clear();
+        fresh.resize(free.len(), false);
+        pairs.clear();
+        pairs.resize(free.len(), 0);
+        for (place, (&free, &[x, y, angle, ..])) in free.iter().zip(before).enumerate() {
+            let slot = if place == 0 { 0 } else { movers.slot(place as u32) };
+            let own = place != 0 && !free && !bodies.rest.is_asleep(slot);
+            let now = || [bodies.x.bits()[slot], bodies.y.bits()[slot], bodies.angle.bits()[slot]];
+            moves.push(own);
+            up.push(!own || !movers.is_slower(place, LEAST) || now() != [x, y, angle]);
+        }
+        up.contains(&false)
+    }
+
+    /// What pairs hang together, and which of them move on.
+    fn join(&mut self, pairs: &[Pair], movers: &Movers, before: &[[i64; 6]]) {
+        for pair in pairs.iter().filter(|pair| !pair.sensor && !pair.stays) {
+            let places = pair.bodies.map(|slot| movers.place_of(slot));
+            let [a, b] = places.map(|place| place as usize);
+            let own = [self.moves[a], self.moves[b]];
+            let calm = [own[0] && !self.up[a], own[1] && !self.up[b]];
+            if calm == [false; 2] {
+                continue;
+            }
+            // A kinematic body that moves, or one beside it that does not repose.
+            let drags = |at: usize| if own[at] { !calm[at] } else { before[places[at] as usize][3..] != [0; 3] };
+            if pair.met || pair.row != NEW && (drags(0) || drags(1)) {
+                (self.up[a], self.up[b]) = (self.up[a] || own[0], self.up[b] || own[1]);
+            } else if pair.row != NEW && calm == [true; 2] {
+                let [a, b] = places.map(|place| leader_of(&mut self.leader, place));
+                self.leader[a.max(b) as usize] = a.min(b);
+            }
+        }
+        for place in 1..self.up.len() {
+            if self.moves[place] && self.up[place] {
+                let leader = leader_of(&mut self.leader, place as u32);
+                self.up[leader as usize] = true;
+            }
+        }
+    }
+}
+
+impl Solver {
+    /// Finds the islands that end the tick as they began it, and leaves them so. `lasting`: whether it is to be remembered.
+    pub(super) fn settle(
+        &mut self,
+        pairs: &mut [Pair],
+        contacts: &Contacts,
+        bodies: &mut Bodies,
+        drive: &Drive,
+        lasting: bool,
+    ) {
+        let mut calm = core::mem::take(&mut self.repose.calm);
+        if calm.find(&self.movers, &self.before, &self.free, bodies) {
+            calm.join(pairs, &self.movers, &self.before);
+            // What begins, ends or is solved otherwise than it was.
+            for pair in pairs.iter().filter(|pair| !pair.sensor && !pair.stays) {
+                for place in pair.bodies.map(|slot| self.movers.place_of(slot)) {
+                    if let Some(island) = calm.island(place) {
+                        calm.up[island] = !is_same(&self.outcome(pair), pair, contacts);
+                    }
+                }
+            }
+        }
+        for place in 1..calm.moves.len() {
+            let Some(island) = calm.island(place as u32) else { continue };
+            halt(bodies, self.movers.slot(place as u32));
+            calm.fresh[island] |= !lasting || self.before[place][3..] != [0; 3];
+        }
+        for pair in pairs.iter_mut().filter(|pair| !pair.sensor && !pair.stays) {
+            let [a, b] = pair.bodies.map(|slot| calm.island(self.movers.place_of(slot)));
+            for island in a.into_iter().chain(b.filter(|_| a != b)) {
+                // What has no rows may strike in the next tick.
+                calm.fresh[island] |= pair.row == NEW;
+                calm.pairs[island] = calm.pairs[island].saturating_add(1);
+                pair.stays = pair.row != NEW;
+            }
+        }
+        self.repose.calm = calm;
+        self.repose.remember(&self.movers, bodies, drive);
+    }
+}
+
+/// Whether a contact is what it was but for its impulses.
+fn is_same(contact: &Contact, pair: &Pair, contacts: &Contacts) -> bool {
+    let last = pair.last(contacts);
+    contact.lasts() == (pair.old != NEW) && (contact.touching, contact.mode) == (last.touching, last.mode)
+}
+
+/// Whether a body has a velocity.
+fn moves(bodies: &Bodies, slot: usize) -> bool {
+    !bodies.velocity(slot).is_zero() || bodies.omega.get(slot) != AngularVelocity::ZERO
+}
+
+/// Whether a body that contacts do not move stays where it is in this tick.
+fn stays(bodies: &Bodies, slot: usize) -> bool {
+    bodies.is_still(slot) || bodies.cold.value(slot).kind == BodyKind::Kinematic && !moves(bodies, slot)
+}
+
+fn halt(bodies: &mut Bodies, slot: usize) {
+    bodies.set_velocity(slot, Vec2::default());
+    bodies.omega.set(slot, AngularVelocity::ZERO);
+}

@@ -1,0 +1,204 @@
+//! Repose: what has come to rest is left to the bit as it is, for good, and what is not computed would have been so.
+#![allow(clippy::disallowed_types, clippy::arithmetic_side_effects, reason = "tests, not the engine")]
+
+mod common;
+#[path = "common/solid.rs"]
+mod solid;
+#[path = "common/weather.rs"]
+mod weather;
+
+use common::{Rng, acc, at, disc, newton_seconds, newtons, rectangle, run, world};
+use solid::{add, fixed, moving, solid};
+use tamias2d::{BodyId, BodyKind, Command, Commands, Vec2, Velocity, World, WorldDef};
+use weather::Weather;
+
+#[global_allocator]
+static ALLOCATOR: common::Counting = common::Counting;
+
+/// A floor whose top is at y = 0.
+fn floor(world: &mut World) -> BodyId {
+    add(world, fixed(0.0, -1.0, rectangle(400.0, 2.0)))
+}
+
+/// A pyramid of boxes of 1 m, its middle at x.
+fn pyramid(world: &mut World, x: f64, rows: u32) -> Vec<BodyId> {
+    let mut bodies = Vec::new();
+    for row in 0..rows {
+        for at in 0..rows - row {
+            let x = x + f64::from(at) - f64::from(rows - row - 1) / 2.0;
+            bodies.push(add(world, solid(x, 0.5 + f64::from(row), rectangle(0.99, 1.0))));
+        }
+    }
+    bodies
+}
+
+/// What of a world moves and pushes, but for the tick.
+fn state(world: &World) -> Vec<u64> {
+    world.hash_parts().iter().filter(|part| part.name != "configuration").map(|part| part.hash).collect()
+}
+
+/// Runs until a tick changes nothing, and says how many that took.
+#[track_caller]
+fn until_still(world: &mut World, most: u64) -> u64 {
+    let mut last = state(world);
+    for tick in 1..=most {
+        world.step();
+        let now = state(world);
+        if now == last {
+            return tick;
+        }
+        last = now;
+    }
+    panic!("something moves after {most} ticks");
+}
+
+/// Steps both, one of which is watched, so that all of it is computed.
+#[track_caller]
+fn step_both(world: &mut World, watched: &mut World, what: impl Fn() -> String) {
+    world.step();
+    watched.step_watched(|_, _| {});
+    if world.hash() != watched.hash() {
+        panic!("{}: tick {}: {:?}", what(), world.tick(), world.diff(watched));
+    }
+    assert_eq!(world.events(), watched.events(), "{}: tick {}", what(), world.tick());
+    assert_eq!(world.collisions(), watched.collisions(), "{}: tick {}", what(), world.tick());
+}
+
+#[test]
+fn what_stands_comes_to_repose_and_stays_to_the_bit() {
+    let mut world = world(0.0, -9.81);
+    floor(&mut world);
+    pyramid(&mut world, 0.0, 12);
+    for row in 0..20 {
+        add(&mut world, solid(30.0, 0.5 + f64::from(row), rectangle(1.0, 1.0)));
+    }
+    add(&mut world, solid(40.0, 0.5, disc(0.5)));
+    let ticks = until_still(&mut world, 600);
+    assert!(ticks > 10, "it settles first");
+    assert!(world.bodies().all(|body| body.velocity() == Vec2::default()));
+    let now = state(&world);
+    run(&mut world, 20_000);
+    assert_eq!(state(&world), now, "for good");
+}
+
+#[test]
+fn what_reposes_allocates_nothing_and_is_not_computed() {
+    let mut world = world(0.0, -9.81);
+    floor(&mut world);
+    pyramid(&mut world, 0.0, 10);
+    until_still(&mut world, 600);
+    run(&mut world, 2);
+    assert_eq!(common::measure(|| run(&mut world, 100)).1, 0, "allocations");
+}
+
+/// Each disturbs a pyramid that reposes, or one beside it, in another way.
+#[test]
+fn what_is_disturbed_goes_on_as_if_all_had_been_computed() {
+    type Disturb = fn(&mut World, &[BodyId], BodyId);
+    let disturbances: [(&str, Disturb); 14] = [
+        ("a ball falls on it", |world, _, _| {
+            add(world, moving(solid(0.3, 9.0, disc(0.4)), 0.0, -12.0));
+        }),
+        ("a ball is thrown through two others at it", |world, _, _| {
+            add(world, moving(solid(9.0, 0.5, disc(0.45)), 0.0, 0.0));
+            add(world, moving(solid(10.0, 0.5, disc(0.45)), 0.0, 0.0));
+            add(world, moving(solid(14.0, 0.5, disc(0.45)), -300.0, 0.0));
+        }),
+        ("one is pushed", |world, bodies, _| {
+            let command = Command::ApplyImpulse { body: bodies[7], impulse: newton_seconds(900.0, 0.0), point: None };
+            world.apply(command).expect("accepted");
+        }),
+        ("one is pushed so little that it stays", |world, bodies, _| {
+            world.apply(Command::ApplyForce { body: bodies[0], force: newtons(3.0, 0.0), point: None }).expect("accepted");
+        }),
+        ("one is given a velocity of one unit", |world, bodies, _| {
+            let velocity = Vec2::new(Velocity::from_bits(1), Velocity::ZERO);
+            world.apply(Command::SetVelocity { body: bodies[0], velocity }).expect("accepted");
+        }),
+        ("one is taken away", |world, bodies, _| {
+            world.apply(Command::DestroyBody { body: bodies[2] }).expect("accepted");
+        }),
+        ("the top is taken away", |world, bodies, _| {
+            world.apply(Command::DestroyBody { body: *bodies.last().expect("some") }).expect("accepted");
+        }),
+        ("one becomes heavier", |world, bodies, _| {
+            let mass = tamias2d::Mass::from_f64(3000.0).expect("in range");
+            let inertia = tamias2d::Inertia::from_f64(500.0).expect("in range");
+            world.apply(Command::SetMass { body: bodies[5], mass, inertia }).expect("accepted");
+        }),
+        ("the floor goes down", |world, _, floor| {
+            world.apply(Command::SetPosition { body: floor, position: at(0.0, -1.01) }).expect("accepted");
+        }),
+        ("the floor goes away", |world, _, floor| {
+            world.apply(Command::DestroyBody { body: floor }).expect("accepted");
+        }),
+        ("gravity turns", |world, _, _| {
+            world.apply(Command::SetGravity { gravity: acc(6.0, -7.0) }).expect("accepted");
+        }),
+        ("a plough comes", |world, _, _| {
+            let plough = BodyKind::Kinematic;
+            let mut def = moving(solid(8.0, 0.6, rectangle(0.5, 1.0)), -2.0, 0.0);
+            def.kind = plough;
+            add(world, def);
+        }),
+        ("one meets nothing any more", |world, bodies, _| {
+            let collider = world.body(bodies[1]).expect("it is").colliders().next().expect("one").id();
+            let filter = tamias2d::Filter { category: 0, mask: 0 };
+            world.apply(Command::SetFilter { collider, filter }).expect("accepted");
+        }),
+        ("the world is another one for a moment", |world, _, _| {
+            let bytes = world.save();
+            *world = World::load(&bytes).expect("a save");
+        }),
+    ];
+    for (what, disturb) in disturbances {
+        let mut world = world(0.0, -9.81);
+        let floor = floor(&mut world);
+        let bodies = pyramid(&mut world, 0.0, 5);
+        pyramid(&mut world, -20.0, 4);
+        until_still(&mut world, 600);
+        run(&mut world, 3);
+        let mut watched = world.clone();
+        for tick in 0..240 {
+            if tick == 3 {
+                disturb(&mut world, &bodies, floor);
+                disturb(&mut watched, &bodies, floor);
+            }
+            step_both(&mut world, &mut watched, || what.into());
+        }
+    }
+}
+
+/// Rooms in which something happens now and then: `seeds` of them, for so many ticks.
+fn rooms(seeds: std::ops::Range<u64>, ticks: u64) {
+    for seed in seeds {
+        let (def, mut weather) = Weather::new(seed);
+        let gravity = if seed % 4 == 3 { def.gravity } else { acc(0.0, -9.81) };
+        let mut world = World::new(&WorldDef { gravity, ..def }).expect("accepted");
+        for command in weather.begin() {
+            let _refused_or_not = world.apply(command);
+        }
+        let mut watched = world.clone();
+        let mut rng = Rng(seed);
+        for _ in 0..ticks {
+            if rng.below(100) == 0 {
+                for command in weather.commands(&world) {
+                    let _refused_or_not = (world.apply(command.clone()), watched.apply(command));
+                }
+            }
+            step_both(&mut world, &mut watched, || format!("room {seed}"));
+        }
+        world.check().expect("every invariant holds");
+    }
+}
+
+#[test]
+fn rooms_go_on_as_if_all_had_been_computed() {
+    rooms(0..24, 600);
+}
+
+#[test]
+#[ignore = "minutes: cargo test --release --test repose -- --ignored"]
+fn many_rooms_go_on_as_if_all_had_been_computed() {
+    rooms(0..600, 3000);
+}
