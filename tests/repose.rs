@@ -109,7 +109,9 @@ fn what_is_disturbed_goes_on_as_if_all_had_been_computed() {
             world.apply(command).expect("accepted");
         }),
         ("one is pushed so little that it stays", |world, bodies, _| {
-            world.apply(Command::ApplyForce { body: bodies[0], force: newtons(3.0, 0.0), point: None }).expect("accepted");
+            world
+                .apply(Command::ApplyForce { body: bodies[0], force: newtons(3.0, 0.0), point: None })
+                .expect("accepted");
         }),
         ("one is given a velocity of one unit", |world, bodies, _| {
             let velocity = Vec2::new(Velocity::from_bits(1), Velocity::ZERO);

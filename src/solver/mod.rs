@@ -173,7 +173,8 @@ impl Solver {
         }
         // Without a hard contact nobody asks for votes.
         let mut any_hard = false;
-        for (at, pair) in touch.pairs.iter_mut().enumerate().filter(|(_, pair)| pair.manifold.count > 0 && !pair.stays) {
+        for (at, pair) in touch.pairs.iter_mut().enumerate().filter(|(_, pair)| pair.manifold.count > 0 && !pair.stays)
+        {
             pair.row = places.len() as u32;
             // All that move have one by now.
             places.push(pair.bodies.map(|slot| movers.place_of(slot)));
@@ -243,7 +244,8 @@ impl Solver {
             repose,
             ..
         } = self;
-        let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[], repose };
+        let stage =
+            Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[], repose };
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
         }
@@ -326,9 +328,9 @@ impl Solver {
             touch.pairs[pair as usize].met = true;
         }
         repose.put_back(bodies);
-        touch.join(&mut timeline.late, contacts);
         let lasting = !movers.brisk && drive.sources.is_empty();
         self.settle(&mut touch.pairs, contacts, bodies, drive, lasting);
+        touch.join(&mut self.timeline.late, contacts);
     }
 
     /// Whether the tick may have moved what was left out of it: then it is to be computed again, with that.

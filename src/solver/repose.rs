@@ -151,8 +151,8 @@ impl Repose {
     }
 
     /// Knows the calm islands of which the next tick will be what this one was.
-    fn remember(&mut self, movers: &Movers, bodies: &Bodies, drive: &Drive) {
-        let Repose { members, island, pairs, found, calm } = self;
+    fn remember(&mut self, calm: &mut Calm, movers: &Movers, bodies: &Bodies, drive: &Drive) {
+        let Repose { members, island, pairs, found, .. } = self;
         let slots = bodies.cold.len();
         island.resize(slots, NONE);
         pairs.resize(slots, 0);
@@ -194,31 +194,42 @@ impl Calm {
         up.contains(&false)
     }
 
-    /// What pairs hang together, and which of them move on.
-    fn join(&mut self, pairs: &[Pair], movers: &Movers, before: &[[i64; 6]]) {
-        for pair in pairs.iter().filter(|pair| !pair.sensor && !pair.stays) {
-            let places = pair.bodies.map(|slot| movers.place_of(slot));
-            let [a, b] = places.map(|place| place as usize);
-            let own = [self.moves[a], self.moves[b]];
-            let calm = [own[0] && !self.up[a], own[1] && !self.up[b]];
+    /// What contacts hold together, and what of it moves on.
+    fn join(&mut self, places: &[[u32; 2]], before: &[[i64; 6]]) {
+        for &[a, b] in places {
+            let own = [a, b].map(|place| self.moves[place as usize]);
+            let calm = [own[0] && !self.up[a as usize], own[1] && !self.up[b as usize]];
             if calm == [false; 2] {
                 continue;
             }
             // A kinematic body that moves, or one beside it that does not repose.
-            let drags = |at: usize| if own[at] { !calm[at] } else { before[places[at] as usize][3..] != [0; 3] };
-            if pair.met || pair.row != NEW && (drags(0) || drags(1)) {
-                (self.up[a], self.up[b]) = (self.up[a] || own[0], self.up[b] || own[1]);
-            } else if pair.row != NEW && calm == [true; 2] {
-                let [a, b] = places.map(|place| leader_of(&mut self.leader, place));
+            let drags = |at: usize, place: u32| {
+                if own[at] { !calm[at] } else { before[place as usize][3..] != [0; 3] }
+            };
+            if drags(0, a) || drags(1, b) {
+                self.rouse([a, b]);
+            } else if calm == [true; 2] {
+                let [a, b] = [a, b].map(|place| leader_of(&mut self.leader, place));
                 self.leader[a.max(b) as usize] = a.min(b);
             }
         }
-        for place in 1..self.up.len() {
-            if self.moves[place] && self.up[place] {
-                let leader = leader_of(&mut self.leader, place as u32);
-                self.up[leader as usize] = true;
-            }
+    }
+
+    /// Those that contacts move do not repose.
+    fn rouse(&mut self, places: [u32; 2]) {
+        for place in places.map(|place| place as usize) {
+            self.up[place] |= self.moves[place];
         }
+    }
+
+    /// Says of islands what was said of one of their bodies. Whether any is calm.
+    fn lead(&mut self) -> bool {
+        let Calm { moves, leader, up, .. } = self;
+        for place in 1..up.len() {
+            let leader = leader_of(leader, place as u32) as usize;
+            up[leader] |= up[place] && moves[place];
+        }
+        (1..up.len()).any(|place| moves[place] && !up[leader_of(leader, place as u32) as usize])
     }
 }
 
@@ -233,33 +244,44 @@ impl Solver {
         lasting: bool,
     ) {
         let mut calm = core::mem::take(&mut self.repose.calm);
-        if calm.find(&self.movers, &self.before, &self.free, bodies) {
-            calm.join(pairs, &self.movers, &self.before);
-            // What begins, ends or is solved otherwise than it was.
-            for pair in pairs.iter().filter(|pair| !pair.sensor && !pair.stays) {
-                for place in pair.bodies.map(|slot| self.movers.place_of(slot)) {
-                    if let Some(island) = calm.island(place) {
-                        calm.up[island] = !is_same(&self.outcome(pair), pair, contacts);
-                    }
+        if calm.find(&self.movers, &self.before, &self.free, bodies) && self.find_calm(&mut calm, pairs, contacts) {
+            for place in 1..calm.moves.len() {
+                let Some(island) = calm.island(place as u32) else { continue };
+                halt(bodies, self.movers.slot(place as u32));
+                calm.fresh[island] |= !lasting || self.before[place][3..] != [0; 3];
+            }
+            for pair in pairs.iter_mut().filter(|pair| !pair.sensor && !pair.stays) {
+                let [a, b] = pair.bodies.map(|slot| calm.island(self.movers.place_of(slot)));
+                for island in a.into_iter().chain(b.filter(|_| a != b)) {
+                    // What has no rows may strike in the next tick.
+                    calm.fresh[island] |= pair.row == NEW;
+                    calm.pairs[island] = calm.pairs[island].saturating_add(1);
+                    pair.stays = pair.row != NEW;
+                }
+            }
+            self.repose.remember(&mut calm, &self.movers, bodies, drive);
+        }
+        self.repose.calm = calm;
+    }
+
+    /// Of islands of calm bodies, those of which no contact became another one. Whether there is one.
+    fn find_calm(&self, calm: &mut Calm, pairs: &[Pair], contacts: &Contacts) -> bool {
+        calm.join(&self.places, &self.before);
+        let met = self.fast.iter().chain(&self.timeline.met).map(|&at| &pairs[at as usize]).filter(|pair| pair.met);
+        for bodies in met.map(|pair| pair.bodies).chain(self.timeline.late.iter().map(|&[_, bodies]| bodies)) {
+            calm.rouse(bodies.map(|slot| self.movers.place_of(slot)));
+        }
+        if !calm.lead() {
+            return false;
+        }
+        for pair in pairs.iter().filter(|pair| !pair.sensor && !pair.stays) {
+            for place in pair.bodies.map(|slot| self.movers.place_of(slot)) {
+                if let Some(island) = calm.island(place) {
+                    calm.up[island] = !is_same(&self.outcome(pair), pair, contacts);
                 }
             }
         }
-        for place in 1..calm.moves.len() {
-            let Some(island) = calm.island(place as u32) else { continue };
-            halt(bodies, self.movers.slot(place as u32));
-            calm.fresh[island] |= !lasting || self.before[place][3..] != [0; 3];
-        }
-        for pair in pairs.iter_mut().filter(|pair| !pair.sensor && !pair.stays) {
-            let [a, b] = pair.bodies.map(|slot| calm.island(self.movers.place_of(slot)));
-            for island in a.into_iter().chain(b.filter(|_| a != b)) {
-                // What has no rows may strike in the next tick.
-                calm.fresh[island] |= pair.row == NEW;
-                calm.pairs[island] = calm.pairs[island].saturating_add(1);
-                pair.stays = pair.row != NEW;
-            }
-        }
-        self.repose.calm = calm;
-        self.repose.remember(&self.movers, bodies, drive);
+        true
     }
 }
 

@@ -68,6 +68,8 @@ fn given(dice: &mut Dice) -> Given {
         row: 0,
         depth: 0,
         met: false,
+        known: false,
+        stays: false,
         restitution: 0,
         friction: dice.within(0, if wild { 100 << 48 } else { 2 << 48 }),
     };
