@@ -20,9 +20,11 @@ LIVE = 0xFFFFFFFF
 def old(contact=None):
     """What the last tick left of a contact."""
     if contact is None:
-        return Row(ids=[0, 0], count=0, normal=[0, 0], tangent=0, mode=0)
+        return Row(ids=[0, 0], count=0, normal=[0, 0], tangent=0, mode=0, record=None)
     c = contact
-    return Row(ids=[c.id0, c.id1], count=c.count, normal=[c.normal0, c.normal1], tangent=c.tangent, mode=c.mode)
+    return Row(
+        ids=[c.id0, c.id1], count=c.count, normal=[c.normal0, c.normal1], tangent=c.tangent, mode=c.mode, record=c
+    )
 
 
 def way(velocity, scales):
@@ -68,7 +70,7 @@ class Pair:
         self.sensor = bool(a.sensor or b.sensor)
         self.restitution, self.friction = surface(world, colliders)
         self.contact, self.mode, self.island = None, 0, None
-        self.depth, self.met = 0, False
+        self.depth, self.met, self.stays = 0, False, False
 
     def overlap(self):
         """By how much it overlaps, Q32 m; negative by the gap; none without points."""
@@ -275,6 +277,10 @@ def finish(world, pairs):
     """The contacts after the tick: those that touch or push."""
     contacts = []
     for pair in pairs:
+        if pair.stays:
+            if pair.known:
+                contacts.append(pair.known.record)
+            continue
         found = outcome(pair)
         if lasts(found):
             slots = world.state.colliders.slots

@@ -2,6 +2,7 @@
 
 import direct
 import narrow
+import repose
 import squeeze
 from ints import cross, dot, mul, rotate, sin_cos
 from motion import integrate
@@ -38,6 +39,7 @@ def step(world, faults):
         pair = Pair(world, colliders, bodies, narrow.manifold([0, 0], []), None)
         pair.met = True
         pairs.append(pair)
+    repose.settle(world, pairs, movers)
     return sorted(pairs, key=lambda pair: pair.colliders), movers
 
 

@@ -1,0 +1,51 @@
+"""Repose: islands that a tick leaves as they are."""
+
+from pairs import lasts, outcome
+
+LEAST = 16 << 28
+
+
+def settle(world, pairs, movers):
+    """Finds the islands that end the tick as they began it, and leaves them so."""
+    state, past, moving = world.state, movers.past, {}
+    for place, mover in enumerate(movers.list):
+        if place and not movers.is_free(place) and not world.is_asleep(mover.slot):
+            began, slot = past[mover.slot], mover.slot
+            stays = [state.x[slot], state.y[slot], state.angle[slot]] == [*began.x, began.angle]
+            moving[place] = stays and all(abs(v) <= LEAST for v in mover.v)
+    up = {place for place, calm in moving.items() if not calm}
+    edges = {}
+    for pair in pairs:
+        if pair.sensor:
+            continue
+        places = [movers.place_of(slot) for slot in pair.bodies]
+        own = [place for place in places if place in moving]
+        drives = pair.contact and any(
+            place and place not in moving and any([*past[slot].v, past[slot].omega])
+            for place, slot in zip(places, pair.bodies)
+        )
+        if pair.met or drives or not same(pair):
+            up |= set(own)
+        if pair.contact and len(own) == 2:
+            edges.setdefault(own[0], []).append(own[1])
+            edges.setdefault(own[1], []).append(own[0])
+    open_ = list(up)
+    while open_:
+        for other in edges.get(open_.pop(), []):
+            if other not in up:
+                up.add(other)
+                open_.append(other)
+    calm = {movers.list[place].slot for place in moving if place not in up}
+    for slot in calm:
+        world.seen["in repose"] += any((state.vx[slot], state.vy[slot], state.omega[slot]))
+        state.vx[slot] = state.vy[slot] = state.omega[slot] = 0
+    for pair in pairs:
+        pair.stays = bool(not pair.sensor and pair.contact and calm & set(pair.bodies))
+
+
+def same(pair):
+    """Whether a contact is what it was but for its impulses."""
+    found, last = outcome(pair), pair.known and pair.known.record
+    if not lasts(found) or not last:
+        return not lasts(found) and not last
+    return (bool(found.touching), found.mode) == (bool(last.touching), last.mode)
