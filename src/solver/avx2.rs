@@ -49,7 +49,7 @@ impl Avx2 {
 
     /// One sweep over a block, see [`sweep::sweep`].
     #[inline]
-    pub(super) fn sweep<const BIASED: bool>(
+    pub(super) fn sweep<const BIASED: bool, const FRICTION: bool>(
         self,
         block: &mut Block,
         lanes: u8,
@@ -57,17 +57,17 @@ impl Avx2 {
         scales: &Scales,
     ) -> (u8, u8) {
         #[target_feature(enable = "avx2")]
-        unsafe fn with_avx2<const BIASED: bool>(
+        unsafe fn with_avx2<const BIASED: bool, const FRICTION: bool>(
             avx2: Avx2,
             block: &mut Block,
             lanes: u8,
             movers: &mut [Mover],
             scales: &Scales,
         ) -> (u8, u8) {
-            sweep::sweep::<_, BIASED>(avx2, block, lanes, movers, scales)
+            sweep::sweep::<_, BIASED, FRICTION>(avx2, block, lanes, movers, scales)
         }
         // SAFETY: `self` says that the processor has AVX2.
-        unsafe { with_avx2::<BIASED>(self, block, lanes, movers, scales) }
+        unsafe { with_avx2::<BIASED, FRICTION>(self, block, lanes, movers, scales) }
     }
 
     /// The rows of eight contacts, see [`Joints::write`].

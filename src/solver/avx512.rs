@@ -55,7 +55,7 @@ impl Avx512 {
 
     /// One sweep over a block, see [`sweep::sweep`].
     #[inline]
-    pub(super) fn sweep<const BIASED: bool>(
+    pub(super) fn sweep<const BIASED: bool, const FRICTION: bool>(
         self,
         block: &mut Block,
         lanes: u8,
@@ -63,17 +63,17 @@ impl Avx512 {
         scales: &Scales,
     ) -> (u8, u8) {
         #[target_feature(enable = "avx512f,avx512vl")]
-        unsafe fn with_avx512<const BIASED: bool>(
+        unsafe fn with_avx512<const BIASED: bool, const FRICTION: bool>(
             avx512: Avx512,
             block: &mut Block,
             lanes: u8,
             movers: &mut [Mover],
             scales: &Scales,
         ) -> (u8, u8) {
-            sweep::sweep::<_, BIASED>(avx512, block, lanes, movers, scales)
+            sweep::sweep::<_, BIASED, FRICTION>(avx512, block, lanes, movers, scales)
         }
         // SAFETY: `self` says that the processor has AVX-512.
-        unsafe { with_avx512::<BIASED>(self, block, lanes, movers, scales) }
+        unsafe { with_avx512::<BIASED, FRICTION>(self, block, lanes, movers, scales) }
     }
 
     /// The rows of eight contacts, see [`Joints::write`].

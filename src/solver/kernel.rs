@@ -7,6 +7,8 @@ use super::avx512::Avx512;
 use super::mover::Mover;
 use super::prepare::Joints;
 use super::rows::Block;
+#[cfg(target_arch = "x86_64")]
+use super::rows::ROUNDS;
 use super::scales::Scales;
 
 #[derive(Clone, Copy, Debug)]
@@ -47,13 +49,25 @@ impl Kernel {
             Kernel::Definition => block.solve::<BIASED>(lanes, movers, scales),
             #[cfg(target_arch = "x86_64")]
             Kernel::Avx2(avx2) => {
-                let swept = avx2.sweep::<BIASED>(block, lanes, movers, scales);
-                block.go_on::<BIASED>(swept, movers, scales);
+                let (blows, pushes) = avx2.sweep::<BIASED, true>(block, lanes, movers, scales);
+                block.pushes = pushes;
+                if blows != 0 {
+                    let again = |block: &mut Block, lanes, movers: &mut [Mover]| {
+                        avx2.sweep::<BIASED, false>(block, lanes, movers, scales).0
+                    };
+                    go_round::<BIASED>(block, blows, movers, scales, again);
+                }
             }
             #[cfg(all(target_arch = "x86_64", avx512))]
             Kernel::Avx512(avx512) => {
-                let swept = avx512.sweep::<BIASED>(block, lanes, movers, scales);
-                block.go_on::<BIASED>(swept, movers, scales);
+                let (blows, pushes) = avx512.sweep::<BIASED, true>(block, lanes, movers, scales);
+                block.pushes = pushes;
+                if blows != 0 {
+                    let again = |block: &mut Block, lanes, movers: &mut [Mover]| {
+                        avx512.sweep::<BIASED, false>(block, lanes, movers, scales).0
+                    };
+                    go_round::<BIASED>(block, blows, movers, scales, again);
+                }
             }
         }
     }
@@ -79,5 +93,24 @@ impl Kernel {
             #[cfg(all(target_arch = "x86_64", avx512))]
             Kernel::Avx512(avx512) => avx512.prepare(joints, block, shift),
         }
+    }
+}
+
+/// As the definition has blows go round, several of them side by side: they share no body. A single one is faster alone.
+#[cfg(target_arch = "x86_64")]
+#[cold]
+fn go_round<const BIASED: bool>(
+    block: &mut Block,
+    mut blows: u8,
+    movers: &mut [Mover],
+    scales: &Scales,
+    together: impl Fn(&mut Block, u8, &mut [Mover]) -> u8,
+) {
+    for _ in 1..ROUNDS {
+        blows = match blows.count_ones() {
+            0 => return,
+            1 => block.go_round_once::<BIASED>(blows, movers, scales),
+            _ => together(block, blows, movers),
+        };
     }
 }

@@ -18,7 +18,7 @@ pub(super) const LOAD: i64 = 1 << 13;
 /// The change of an impulse from which on it is a blow: 1/64 m/s, Q20.
 pub(super) const BLOW: i64 = 1 << 14;
 /// How often a blow goes round.
-const ROUNDS: u32 = 8;
+pub(super) const ROUNDS: u32 = 8;
 /// The greatest impulse λ̂: 512 m/s.
 pub(super) const IMPULSE_MAX: i64 = 1 << 29;
 pub(super) type Lane = [i32; LANES];
@@ -157,35 +157,23 @@ impl Block {
             blows |= u8::from(blow) << i;
             pushes |= u8::from(pushed) << i;
         }
-        self.go_on::<BIASED>((blows, pushes), movers, scales);
-    }
-
-    /// After a sweep, of which contacts took a blow and which pushed: the former go round. The others share no body with them.
-    #[inline(always)]
-    pub(super) fn go_on<const BIASED: bool>(
-        &mut self,
-        (blows, pushes): (u8, u8),
-        movers: &mut [Mover],
-        scales: &Scales,
-    ) {
         self.pushes = pushes;
-        if blows != 0 {
-            for i in (0..LANES).filter(|i| blows >> i & 1 != 0) {
-                self.go_round::<BIASED>(i, movers, scales);
-            }
-        }
-    }
-
-    /// A blow goes round between the two points until both bear their part of it: a box that lands flat is not to turn in
-    /// the substep in which it lands.
-    #[cold]
-    #[inline(never)]
-    fn go_round<const BIASED: bool>(&mut self, i: usize, movers: &mut [Mover], scales: &Scales) {
+        // A blow goes round between the two points until both bear their part of it: a box that lands flat is not to turn in the
+        // substep in which it lands. The others share no body with it.
         for _ in 1..ROUNDS {
-            if !self.contact::<BIASED, false>(i, movers, scales).0 {
+            if blows == 0 {
                 break;
             }
+            blows = self.go_round_once::<BIASED>(blows, movers, scales);
         }
+    }
+
+    /// Once more the contacts whose bits are set, without friction: which of them took a blow again.
+    #[inline(never)]
+    pub(super) fn go_round_once<const BIASED: bool>(&mut self, blows: u8, movers: &mut [Mover], scales: &Scales) -> u8 {
+        (0..LANES)
+            .filter(|i| blows >> i & 1 != 0)
+            .fold(0, |again, i| again | u8::from(self.contact::<BIASED, false>(i, movers, scales).0) << i)
     }
 
     /// What the rows of a contact read.

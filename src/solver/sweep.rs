@@ -8,10 +8,10 @@ use super::rows::{BLOW, Block, IMPULSE_MAX, LOAD, Lane, PUSHES, Row};
 use super::scales::{SLOP, Scales};
 use super::words::{Eight, Factor, Mask, Narrow, Wide, Words};
 
-/// Solves each of the contacts whose bits are set once. By contact, from the lowest bit: whether it took a blow, and
-/// whether a row pushed.
+/// Solves each of the contacts whose bits are set once, with or without their friction. By contact, from the lowest bit: whether it
+/// took a blow, and whether a row pushed.
 #[inline(always)]
-pub(super) fn sweep<K: Words, const BIASED: bool>(
+pub(super) fn sweep<K: Words, const BIASED: bool, const FRICTION: bool>(
     k: K,
     block: &mut Block,
     lanes: u8,
@@ -36,24 +36,15 @@ pub(super) fn sweep<K: Words, const BIASED: bool>(
     let across = nx.mul(v[1]).sub(ny.mul(v[0]));
     let load = [k.load(&block.points[0].impulse), k.load(&block.points[1].impulse)];
 
-    let limit = k.factor(&block.limit[0]).mul(load[0].factor());
-    let limit = limit.add(k.factor(&block.limit[1]).mul(load[1].factor()));
-    let limit = limit.round_limited(k).min(k.narrow(IMPULSE_MAX as i32));
-    let before = k.load(&block.friction.impulse);
-    // A slip beyond ±2³⁰ leaves no impulse within ±2²⁹ but a limit, as ±2³⁰ does.
-    let slip = across.add(turning(k, &block.friction, w)).round_limited(k);
-    let impulse = before.sub(slip).min(limit).max(k.narrow(0).sub(limit));
-    let impulse = chosen.pick(impulse, before);
-    impulse.store(&mut block.friction.impulse);
-    let slide = impulse.sub(before);
+    let slide = if FRICTION { slide(k, block, across, w, load, chosen) } else { k.narrow(0) };
 
     let speed = along.add(turning(k, &block.points[0], w));
-    let speed = coupled::<K>(speed, k.factor(&block.couple[0]), slide.factor());
+    let speed = if FRICTION { coupled::<K>(speed, k.factor(&block.couple[0]), slide.factor()) } else { speed };
     let (first, pushes_first) = answer::<K, BIASED>(k, scales, speed, load[0], separation[0]);
     let first = chosen.pick(first, load[0]);
     let change_first = first.sub(load[0]);
     let speed = along.add(turning(k, &block.points[1], w));
-    let speed = coupled::<K>(speed, k.factor(&block.couple[1]), slide.factor());
+    let speed = if FRICTION { coupled::<K>(speed, k.factor(&block.couple[1]), slide.factor()) } else { speed };
     let speed = coupled::<K>(speed, k.factor(&block.couple[2]), change_first.factor());
     let speed = speed.add(k.factor(&block.points[0].line).mul(change_first.factor()));
     let (second, pushes_second) = answer::<K, BIASED>(k, scales, speed, load[1], separation[1]);
@@ -70,6 +61,28 @@ pub(super) fn sweep<K: Words, const BIASED: bool>(
     }
     let mild = k.narrow(BLOW as i32).above(change_first.abs().max(change_second.abs()));
     (!mild.bits(), pushes_first.or(pushes_second).and(chosen).bits())
+}
+
+/// By how much the impulse of friction changes, which is kept.
+#[inline(always)]
+fn slide<K: Words>(
+    k: K,
+    block: &mut Block,
+    across: K::Wide,
+    w: [K::Factor; 2],
+    load: [K::Narrow; 2],
+    chosen: K::Mask,
+) -> K::Narrow {
+    let limit = k.factor(&block.limit[0]).mul(load[0].factor());
+    let limit = limit.add(k.factor(&block.limit[1]).mul(load[1].factor()));
+    let limit = limit.round_limited(k).min(k.narrow(IMPULSE_MAX as i32));
+    let before = k.load(&block.friction.impulse);
+    // A slip beyond ±2³⁰ leaves no impulse within ±2²⁹ but a limit, as ±2³⁰ does.
+    let slip = across.add(turning(k, &block.friction, w)).round_limited(k);
+    let impulse = before.sub(slip).min(limit).max(k.narrow(0).sub(limit));
+    let impulse = chosen.pick(impulse, before);
+    impulse.store(&mut block.friction.impulse);
+    impulse.sub(before)
 }
 
 /// What the last tick's impulses do to the bodies.
