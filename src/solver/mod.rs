@@ -37,6 +37,7 @@ use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Contact, Contacts, NEW, Pair, Touch};
 use crate::motion::{Drive, Fault};
 use crate::num::mul;
+use crate::threads::Crew;
 use color::Colors;
 use direct::{Direct, GIVEN_UP, Rows};
 use fast::{strikes, swings};
@@ -60,6 +61,9 @@ use turning::{Turning, turns};
 /// better and a tick takes 1.6 times as long.
 const RELAX: u32 = 5;
 
+/// So many pairs make a piece: 4 µs.
+const PAIRS: usize = 512;
+
 /// What two ways of computing how far two bodies overlap may differ by: 10 nm, Q32 m.
 const ROUNDING: i64 = 43;
 
@@ -69,6 +73,8 @@ pub(crate) struct Solver {
     /// By slot of a body; kept by commands.
     pub(crate) mobilities: Vec<Mobility>,
     pub(crate) scales: Scales,
+    /// By pair, whether it comes too fast for rows.
+    coming: Vec<bool>,
     movers: Movers,
     before: Vec<[i64; 6]>,
     free: Vec<bool>,
@@ -107,10 +113,18 @@ impl Clone for Solver {
 impl Solver {
     /// Rows for the pairs of this tick that touch or come near slowly, while the bodies are where it begins; what comes
     /// fast is left to strike.
-    pub(crate) fn prepare(&mut self, touch: &mut Touch, contacts: &Contacts, bodies: &Bodies, drive: &Drive) {
+    pub(crate) fn prepare(
+        &mut self,
+        touch: &mut Touch,
+        contacts: &Contacts,
+        bodies: &Bodies,
+        drive: &Drive,
+        crew: Crew,
+    ) {
         let Solver {
             mobilities,
             scales,
+            coming,
             movers,
             before,
             free,
@@ -139,9 +153,15 @@ impl Solver {
         squeezed.clear();
         fast.clear();
         turning.clear();
+        coming.resize(touch.pairs.len(), false);
+        crew.share((touch.pairs.as_slice(), coming.as_mut_slice()), PAIRS, |(pairs, coming)| {
+            for (pair, coming) in pairs.iter().zip(coming) {
+                let swings = || swings(pair, bodies, drive, mobilities, scales);
+                *coming = pair.manifold.count == 0 || strikes(pair, bodies, drive, scales, false) || swings();
+            }
+        });
         for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !pair.sensor) {
-            let swings = || swings(pair, bodies, drive, mobilities, scales);
-            if pair.manifold.count == 0 || strikes(pair, bodies, drive, scales, false) || swings() {
+            if coming[at] {
                 fast.push(at as u32);
             } else {
                 for slot in pair.bodies {
@@ -201,7 +221,7 @@ impl Solver {
         blocks.resize_with(colors.blocks, Block::default);
 
         let basis = Basis { pairs: &touch.pairs, rows, places, heavy, contacts, bodies, mobilities, scales };
-        basis.write(blocks, colors, *kernel);
+        basis.write(blocks, colors, *kernel, crew);
         let rows = Rows { places, modes, seats: &colors.seats, blocks };
         direct.build(islands, &rows, movers, mobilities, scales);
     }
@@ -218,6 +238,7 @@ impl Solver {
         drive: &Drive,
         faults: &mut Vec<Fault>,
         mut watch: impl FnMut(u32, Substep<'_>),
+        crew: Crew,
     ) {
         let Solver {
             mobilities,
