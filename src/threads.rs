@@ -14,11 +14,11 @@ mod crew;
 #[path = "threads/pool.rs"]
 mod crew;
 
+use core::ops::Range;
+pub(crate) use crew::Crew;
 pub use crew::Threads;
 #[cfg(feature = "threads")]
 pub use crew::ThreadsError;
-pub(crate) use crew::Crew;
-use core::ops::Range;
 
 /// What can be cut in two: slices and tuples of them, and what stages make of such.
 pub(crate) trait Cut: Send + Sized {

@@ -1,7 +1,7 @@
 //! How wrong the engine is, and at what cost: `cargo bench --bench work_precision` writes `benches/report` anew.
 //!
 //! `-- grid`, `-- hard`, `-- features`, `-- growth` or `-- lockstep` measures a part only, and a number after `growth` is the
-//! most bodies; `-- page` draws what was measured before; `-- peers` reads what `benches/peers/driver.py` left in `$PEERS`.
+//! most bodies; `-- threads`, with the feature of that name, prints what several threads gain; `-- page` draws what was measured before; `-- peers` reads what `benches/peers/driver.py` left in `$PEERS`.
 #![allow(
     clippy::disallowed_types,
     clippy::arithmetic_side_effects,
@@ -26,6 +26,8 @@ mod reference;
 mod scenes;
 mod stage;
 mod table;
+#[cfg(feature = "threads")]
+mod threads;
 mod trace;
 mod yardstick;
 
@@ -41,6 +43,10 @@ fn main() {
         return;
     }
     let parts: Vec<&str> = args.iter().map(String::as_str).filter(|arg| !arg.starts_with('-')).collect();
+    #[cfg(feature = "threads")]
+    if parts == ["threads"] {
+        return threads::print();
+    }
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let wanted = |part: &str| parts.is_empty() || parts.contains(&part);
     let folder = root.join("benches/report");

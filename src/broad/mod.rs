@@ -181,13 +181,7 @@ impl Broad {
     /// `swept` gives moving proxies' present boxes; it is asked for each of them, once. `shift`, Q32 m, is how far moving proxies have commonly moved since
     /// the last update: any value is correct, a good one is fast. `wanted(a, b)`, a < b, says whether a pair is of
     /// interest; it is asked when a pair is found, which is not in every update.
-    pub(crate) fn update(
-        &mut self,
-        shift: [i64; 2],
-        swept: impl Sweep,
-        wanted: impl Fn(u32, u32) -> bool,
-        crew: Crew,
-    ) {
+    pub(crate) fn update(&mut self, shift: [i64; 2], swept: impl Sweep, wanted: impl Fn(u32, u32) -> bool, crew: Crew) {
         self.tick = self.tick.wrapping_add(1);
         self.advance(shift);
         self.sweep(shift, swept, crew);

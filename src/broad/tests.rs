@@ -1,8 +1,8 @@
 #![allow(clippy::arithmetic_side_effects, reason = "tests, not the engine")]
 
-use super::{Broad, Sweep};
 use super::rect::Rect;
 use super::tree::Tree;
+use super::{Broad, Sweep};
 use crate::geom::{Aabb, Vec2};
 use crate::num::Length;
 use crate::threads::{Crew, Cut};

@@ -193,8 +193,7 @@ impl Touch {
         let close = self.place_close(course);
         let Touch { broad, proxies, looks, close: list, found, kept: _, pairs } = self;
         let view = View { proxies, bodies, contacts, drive, margins };
-        let search =
-            Search { candidates: broad.candidates(), close: &list[..close], seen: looks.seen(), view };
+        let search = Search { candidates: broad.candidates(), close: &list[..close], seen: looks.seen(), view };
         let pieces = crew.note(search, LOOKS, found, |search, found| search.run(found));
         let found = &mut found[..pieces];
         // What the first one found is most of it, where there is one only.

@@ -282,13 +282,7 @@ fn decay(bodies: &mut Bodies, drive: &Drive) {
 
 /// Velocities by what `change` makes of the prepared kicks.
 #[inline]
-fn kick(
-    bodies: &mut Bodies,
-    drive: &Drive,
-    faults: &mut Vec<Fault>,
-    change: impl Fn(i64) -> i64 + Sync,
-    crew: Crew,
-) {
+fn kick(bodies: &mut Bodies, drive: &Drive, faults: &mut Vec<Fault>, change: impl Fn(i64) -> i64 + Sync, crew: Crew) {
     let Bodies { cold: _, rest, x: _, y: _, vx, vy, angle: _, omega } = bodies;
     let [kick_x, kick_y, kick_turn] = &drive.kick;
     for (velocity, kicks, bound) in [

@@ -270,7 +270,7 @@ impl Solver {
             }
             blocks[swept..].iter().for_each(|block| block.warm_start(&mut movers.lanes));
             for substep in 1..=scales.substeps {
-                movers.begin(substep == 1);
+                movers.begin(substep == 1, crew);
                 for &pair in &*turning {
                     let anew = Turning { bodies, colliders, mobilities, scales, before };
                     let pair = &mut touch.pairs[pair as usize];
@@ -285,7 +285,7 @@ impl Solver {
                 }
                 direct.solve::<true>(blocks, &mut movers.lanes, scales);
                 movers.hold_back(mobilities);
-                movers.drift(scales);
+                movers.drift(scales, crew);
                 let seats = &colors.seats;
                 let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats, blocks };
                 timeline.run(scales.span(substep), &stage, movers, faults);

@@ -61,17 +61,6 @@ impl World {
         self.step_through(&mut Looks(watch), Crew::ALONE);
     }
 
-    /// TEMP
-    pub fn step_watched_on(&mut self, threads: &Threads, watch: impl FnMut(Stage, &World) + Send) {
-        struct Looks<F>(F);
-        impl<F: FnMut(Stage, &World)> Watch for Looks<F> {
-            fn stage(&mut self, stage: Stage, world: &mut World) {
-                (self.0)(stage, world);
-            }
-        }
-        threads.work(|crew| self.step_through(&mut Looks(watch), crew));
-    }
-
     /// The stages of a tick, in order.
     pub(crate) fn step_through(&mut self, watch: &mut impl Watch, crew: Crew) {
         self.begin_forces();
