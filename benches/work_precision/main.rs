@@ -1,7 +1,8 @@
 //! How wrong the engine is, and at what cost: `cargo bench --bench work_precision` writes `benches/report` anew.
 //!
 //! `-- grid`, `-- hard`, `-- features`, `-- growth` or `-- lockstep` measures a part only, and a number after `growth` is the
-//! most bodies; `-- threads`, with the feature of that name, prints what several threads gain; `-- page` draws what was measured before; `-- peers` reads what `benches/peers/driver.py` left in `$PEERS`.
+//! most bodies; `-- page` draws what was measured before; `-- peers` reads what `benches/peers/driver.py` left in `$PEERS`.
+//! `-- threads`, with the feature of that name, prints what several threads gain, and writes nothing.
 #![allow(
     clippy::disallowed_types,
     clippy::arithmetic_side_effects,

@@ -100,7 +100,7 @@ impl Evidence {
     /// Steps the world and keeps the tick, in the memory that this has.
     pub(super) fn take(&mut self, world: &mut World, draft: &mut Draft, origin: Origin, threads: &Threads) {
         self.begin(world, draft, origin);
-        threads.work(|crew| world.step_through(&mut Taker { evidence: self, draft }, crew));
+        threads.work(world.effort(), |crew| world.step_through(&mut Taker { evidence: self, draft }, crew));
         (self.tick, self.hash) = (world.tick(), world.hash());
         world.save_into(&mut self.after);
     }

@@ -9,13 +9,17 @@ use std::thread;
 /// So many pieces a thread: then one that is late, or got what takes longer, is waited for less.
 const PIECES: usize = 4;
 
+/// A tick that takes less is not worth waking anybody for, nanoseconds.
+const LEAST: usize = 400_000;
+
 /// Threads that step a world together.
 ///
 /// They are nobody's state: no bit of a world, and nothing that is saved, hashed or recorded, depends on how many there are, or on
 /// whether there are any. A copy is the same threads. Two worlds may be stepped by the same ones at the same time; whichever comes
 /// second then is stepped by the thread that calls.
 ///
-/// While a tick lasts all of them are busy, those that wait too; between ticks they sleep. The thread that calls waits.
+/// A tick of less than about 0.4 ms is left to the thread that calls. While a longer one lasts all of them are busy, those that
+/// wait too; between ticks they sleep. The thread that calls waits.
 ///
 /// ```
 /// use tamias2d::{Threads, World, WorldDef};
@@ -91,9 +95,10 @@ impl Threads {
         self.pool.as_ref().map_or(1, |pool| pool.threads.current_num_threads())
     }
 
-    /// Has a tick done: by one of them, and the others help.
-    pub(crate) fn work(&self, tick: impl FnOnce(Crew) + Send) {
-        let Some(pool) = &self.pool else { return tick(Crew::ALONE) };
+    /// Has a tick done that takes about so many nanoseconds: by one of them, and the others help.
+    pub(crate) fn work(&self, nanoseconds: usize, tick: impl FnOnce(Crew) + Send) {
+        let large = |pool: &&Arc<Pool>| pool.crew.eager || nanoseconds >= LEAST;
+        let Some(pool) = self.pool.as_ref().filter(large) else { return tick(Crew::ALONE) };
         // One tick at a time: a thread that waits for a piece may begin whatever lies there, and two ticks could wait for each
         // other's end.
         let busy = pool.busy.try_lock();

@@ -38,7 +38,16 @@ impl World {
     /// As [`World::step`], by several threads: the same bits, however many there are. Stages that go body by body, contact by
     /// contact or pair by pair are cut up where a world is large enough; what hangs together stays with one thread.
     pub fn step_on(&mut self, threads: &Threads) {
-        threads.work(|crew| self.step_through(&mut Nobody, crew));
+        threads.work(self.effort(), |crew| self.step_through(&mut Nobody, crew));
+    }
+
+    /// About how many nanoseconds a tick takes, by what is awake: 25 a body that flies, 80 a body and source of gravity, 250 a
+    /// contact.
+    pub(crate) fn effort(&self) -> usize {
+        let World { bodies, contacts, drive, .. } = self;
+        let awake: usize = bodies.rest.all_runs().map(|run| run.len()).fold(0, usize::saturating_add);
+        let body = drive.sources.len().saturating_mul(80).saturating_add(25);
+        awake.saturating_mul(body).saturating_add(contacts.len().saturating_mul(250))
     }
 
     /// As [`World::step`], and `watch` sees the world after each stage. To watch changes nothing.
