@@ -8,6 +8,7 @@
 //! |---|---|
 //! | [`num`] | quantity types, the one rounding and overflow policy, roots and trigonometry |
 //! | [`geom`] | vectors, rotations, boxes |
+//! | `threads` | how loops are cut up for several threads (feature `threads`) |
 //! | `store` | bytes, field lists, columns, slots with generations |
 //! | `shape` | convex forms, their outlines and masses |
 //! | `body` | what bodies, colliders and attractors are |
@@ -44,6 +45,7 @@ mod shape;
 mod snapshot;
 mod solver;
 mod store;
+mod threads;
 mod world;
 
 pub use body::{Attractor, BodyDef, BodyError, BodyKind};
@@ -58,6 +60,9 @@ pub use shape::{ColliderDef, Filter, Shape, ShapeError};
 pub use snapshot::{Frame, FrameError, HashPart, LAW, SAVE_VERSION};
 pub use solver::{Impact, ImpactError, Striker, impact};
 pub use store::{AttractorId, BodyId, ColliderId, DecodeError, Difference};
+pub use threads::Threads;
+#[cfg(feature = "threads")]
+pub use threads::ThreadsError;
 pub use world::{
     Body, Bound, ClosestPoint, Collider, Command, CommandError, Commands, ConfigError, INPUT_MAX, Integrator, RayHit,
     Reply, Sleeping, Stage, Status, StatusEntry, World, WorldDef,

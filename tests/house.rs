@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// The modules of the library, lowest floor first. A module sees its own floor and those below.
 const FLOORS: [&[&str]; 13] = [
-    &["num", "geom"],
+    &["num", "geom", "threads"],
     &["store"],
     &["shape"],
     &["body"],

@@ -2,6 +2,7 @@
 //!
 //! `-- grid`, `-- hard`, `-- features`, `-- growth` or `-- lockstep` measures a part only, and a number after `growth` is the
 //! most bodies; `-- page` draws what was measured before; `-- peers` reads what `benches/peers/driver.py` left in `$PEERS`.
+//! `-- threads`, with the feature of that name, prints what several threads gain, and writes nothing.
 #![allow(
     clippy::disallowed_types,
     clippy::arithmetic_side_effects,
@@ -26,6 +27,8 @@ mod reference;
 mod scenes;
 mod stage;
 mod table;
+#[cfg(feature = "threads")]
+mod threads;
 mod trace;
 mod yardstick;
 
@@ -41,6 +44,10 @@ fn main() {
         return;
     }
     let parts: Vec<&str> = args.iter().map(String::as_str).filter(|arg| !arg.starts_with('-')).collect();
+    #[cfg(feature = "threads")]
+    if parts == ["threads"] {
+        return threads::print();
+    }
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let wanted = |part: &str| parts.is_empty() || parts.contains(&part);
     let folder = root.join("benches/report");

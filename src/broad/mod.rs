@@ -13,6 +13,7 @@ mod tree;
 
 use crate::geom::Aabb;
 use crate::store::clone_fields;
+use crate::threads::{Crew, Cut};
 use rect::Rect;
 use tree::Tree;
 
@@ -29,6 +30,8 @@ const MARGIN: i64 = 1 << 25;
 const FARTHEST: u64 = 1 << 61;
 /// So many proxies are looked at at once whether one moves.
 const STRIDE: usize = 64;
+/// So many proxies make a piece: 5 µs.
+const SLOTS: usize = 512;
 /// So many changed fixed boxes are looked at one by one, more as one box around all.
 const CHANGES: usize = 8;
 
@@ -42,6 +45,12 @@ const KIND: u8 = 0b1100;
 const DUE_MOVING: u8 = 0b0001;
 const DUE_FIXED: u8 = 0b0010;
 const DUE: u8 = 0b0011;
+
+/// Proxies by slot, of which those that move are asked for their present boxes.
+pub(crate) trait Sweep: Cut {
+    /// Of the proxy at a place among them: its slot, and its box.
+    fn sweep(&mut self, at: usize) -> (u32, Aabb);
+}
 
 /// The broad phase. Coordinates are the bits of lengths, Q32 m.
 #[derive(Debug, Default)]
@@ -66,7 +75,8 @@ pub(crate) struct Broad {
     touched: Vec<u32>,
     /// Where fixed boxes appeared since the last update, at most [`CHANGES`].
     changed: Vec<Rect>,
-    /// Moving proxies due in this update, and the pairs it found: space only, empty between times.
+    /// Moving proxies due in this update, with their boxes, and the pairs it found: space only, empty between times.
+    leaving: Vec<(u32, Rect)>,
     due: Vec<u32>,
     found: Vec<(u32, u32)>,
     pairs: Vec<(u32, u32)>,
@@ -84,6 +94,7 @@ clone_fields!(Broad {
     moving,
     touched,
     changed,
+    leaving,
     due,
     found,
     pairs
@@ -167,18 +178,13 @@ impl Broad {
 
     /// Brings the candidates up to date, once per tick.
     ///
-    /// `swept` gives a moving proxy's present box; it is asked for each of them. `shift`, Q32 m, is how far moving proxies have commonly moved since
+    /// `swept` gives moving proxies' present boxes; it is asked for each of them, once. `shift`, Q32 m, is how far moving proxies have commonly moved since
     /// the last update: any value is correct, a good one is fast. `wanted(a, b)`, a < b, says whether a pair is of
     /// interest; it is asked when a pair is found, which is not in every update.
-    pub(crate) fn update(
-        &mut self,
-        shift: [i64; 2],
-        swept: impl FnMut(u32) -> Aabb,
-        wanted: impl Fn(u32, u32) -> bool,
-    ) {
+    pub(crate) fn update(&mut self, shift: [i64; 2], swept: impl Sweep, wanted: impl Fn(u32, u32) -> bool, crew: Crew) {
         self.tick = self.tick.wrapping_add(1);
         self.advance(shift);
-        self.sweep(shift, swept);
+        self.sweep(shift, swept, crew);
         if self.touched.is_empty() && self.due.is_empty() {
             return;
         }
@@ -207,44 +213,24 @@ impl Broad {
     }
 
     /// Finds the moving proxies that are due, and gives them new fat boxes.
-    fn sweep(&mut self, shift: [i64; 2], mut swept: impl FnMut(u32) -> Aabb) {
-        let mut slot = 0;
-        while slot < self.states.len() {
-            let mut state = self.states[slot];
-            if state & KIND != MOVING {
-                slot = slot.saturating_add(self.fixed_from(slot));
-                continue;
-            }
-            let proxy = slot as u32;
-            let world = Rect::new(&swept(proxy));
-            let local = world.seen_from(self.frame);
-            let near = &self.near[slot];
-            if !near.contains(&world) || self.changed.iter().any(|rect| rect.overlaps(near)) {
-                state |= DUE_FIXED;
-            }
-            if !self.fat[slot].contains(&local) {
-                state |= DUE_MOVING;
-            }
-            if state & DUE != 0 {
-                self.states[slot] = state;
-                self.due.push(proxy);
-                self.fatten(slot, shift, &world, &local);
-            }
-            slot = slot.saturating_add(1);
+    fn sweep(&mut self, shift: [i64; 2], swept: impl Sweep, crew: Crew) {
+        let Broad { frame, states, near, fat, changed, leaving, .. } = self;
+        let slots = (states.as_mut_slice(), (near.as_slice(), fat.as_slice()), swept);
+        crew.gather(slots, SLOTS, leaving, |(states, (near, fat), swept), leaving| {
+            leave(Slots { states, near, fat }, swept, *frame, changed, leaving);
+        });
+        let mut leaving = core::mem::take(&mut self.leaving);
+        for (proxy, world) in leaving.drain(..) {
+            self.due.push(proxy);
+            self.fatten(proxy as usize, shift, &world);
         }
-    }
-
-    /// How many proxies from one on that does not move do not, at least; by many at a time where few do.
-    #[inline]
-    fn fixed_from(&self, slot: usize) -> usize {
-        let moves = |states: &[u8]| states.iter().fold(false, |any, state| any | (state & KIND == MOVING));
-        let blocks = self.states[slot..].chunks(STRIDE).take_while(|states| !moves(states));
-        blocks.fold(0usize, |skipped, states| skipped.saturating_add(states.len())).max(1)
+        self.leaving = leaving;
     }
 
     /// New fat boxes, from how the proxy's box moved and grew since the last ones.
     #[inline(never)]
-    fn fatten(&mut self, slot: usize, shift: [i64; 2], world: &Rect, local: &Rect) {
+    fn fatten(&mut self, slot: usize, shift: [i64; 2], world: &Rect) {
+        let local = &world.seen_from(self.frame);
         let ticks = i64::from(self.tick.wrapping_sub(self.since[slot])).max(1);
         let ahead = AHEAD.saturating_add(slot as i64 & 7);
         let from = &self.from[slot];
@@ -333,6 +319,47 @@ impl Broad {
     pub(crate) fn candidates(&self) -> &[(u32, u32)] {
         &self.pairs
     }
+}
+
+/// Some proxies: kind and due, fat boxes.
+struct Slots<'b> {
+    states: &'b mut [u8],
+    near: &'b [Rect],
+    fat: &'b [Rect],
+}
+
+/// Asks for the boxes of those that move, and notes who is due.
+fn leave(slots: Slots<'_>, mut swept: impl Sweep, frame: [i64; 2], changed: &[Rect], leaving: &mut Vec<(u32, Rect)>) {
+    let Slots { states, near, fat } = slots;
+    let mut at = 0;
+    while at < states.len() {
+        let mut state = states[at];
+        if state & KIND != MOVING {
+            at = at.saturating_add(fixed_from(&states[at..]));
+            continue;
+        }
+        let (proxy, aabb) = swept.sweep(at);
+        let world = Rect::new(&aabb);
+        if !near[at].contains(&world) || changed.iter().any(|rect| rect.overlaps(&near[at])) {
+            state |= DUE_FIXED;
+        }
+        if !fat[at].contains(&world.seen_from(frame)) {
+            state |= DUE_MOVING;
+        }
+        if state & DUE != 0 {
+            states[at] = state;
+            leaving.push((proxy, world));
+        }
+        at = at.saturating_add(1);
+    }
+}
+
+/// How many of these, of which the first does not move, do not, at least; by many at a time where few do.
+#[inline]
+fn fixed_from(states: &[u8]) -> usize {
+    let moves = |states: &[u8]| states.iter().fold(false, |any, state| any | (state & KIND == MOVING));
+    let blocks = states.chunks(STRIDE).take_while(|states| !moves(states));
+    blocks.fold(0usize, |skipped, states| skipped.saturating_add(states.len())).max(1)
 }
 
 /// A box with a margin, and larger by what lies ahead: to the left, down, right, up.

@@ -1,10 +1,11 @@
 #![allow(clippy::arithmetic_side_effects, reason = "tests, not the engine")]
 
-use super::Broad;
 use super::rect::Rect;
 use super::tree::Tree;
+use super::{Broad, Sweep};
 use crate::geom::{Aabb, Vec2};
 use crate::num::Length;
+use crate::threads::{Crew, Cut};
 use proptest::prelude::*;
 
 const M: i64 = 1 << 32;
@@ -104,13 +105,33 @@ fn truth(model: &Model) -> Vec<(u32, u32)> {
     pairs
 }
 
+/// Boxes by slot, from one on.
+struct By<F>(usize, F);
+
+impl<F: Fn(u32) -> Aabb + Copy + Send> Cut for By<F> {
+    fn len(&self) -> usize {
+        usize::MAX
+    }
+
+    fn cut(self, at: usize) -> (Self, Self) {
+        (By(self.0, self.1), By(self.0 + at, self.1))
+    }
+}
+
+impl<F: Fn(u32) -> Aabb + Copy + Send> Sweep for By<F> {
+    fn sweep(&mut self, at: usize) -> (u32, Aabb) {
+        let slot = (self.0 + at) as u32;
+        (slot, (self.1)(slot))
+    }
+}
+
 fn update(broad: &mut Broad, model: &Model, shift: [i64; 2]) {
     let swept = |slot: u32| {
         let proxy = model[slot as usize].expect("asked for a proxy that is not there");
         assert!(proxy.moves, "asked for a fixed proxy");
         proxy.aabb()
     };
-    broad.update(shift, swept, |a, b| wanted(model, a, b));
+    broad.update(shift, By(0, swept), |a, b| wanted(model, a, b), Crew::ALONE);
 }
 
 /// Everything that `candidates` promises.
@@ -260,7 +281,7 @@ fn unknown_proxies_may_be_removed_and_touched() {
     let mut broad = Broad::default();
     broad.remove(7);
     broad.touch(u32::MAX);
-    broad.update([0; 2], |_| unreachable!(), |_, _| unreachable!());
+    broad.update([0; 2], By(0, |_| unreachable!()), |_, _| unreachable!(), Crew::ALONE);
     assert_eq!(broad.candidates(), []);
 }
 
@@ -281,7 +302,7 @@ fn what_falls_together_is_searched_once() {
         let way = -tick * M / 360;
         fallen += way;
         let swept = |slot: u32| aabb([places[slot as usize][0], places[slot as usize][1] + fallen], half);
-        broad.update([0, way], swept, |_, _| unreachable!());
+        broad.update([0, way], By(0, swept), |_, _| unreachable!(), Crew::ALONE);
         assert!(broad.since.iter().all(|&since| since <= 1), "a new fat box in tick {tick}");
     }
 }
@@ -297,7 +318,8 @@ fn what_rests_is_searched_once() {
     }
     for tick in 1..300 {
         let jitter = random.within(M / 1_000_000);
-        broad.update([0; 2], |slot| aabb(places[slot as usize], [M / 2 + jitter[0]; 2]), |_, _| true);
+        let swept = |slot: u32| aabb(places[slot as usize], [M / 2 + jitter[0]; 2]);
+        broad.update([0; 2], By(0, swept), |_, _| true, Crew::ALONE);
         assert!(broad.since.iter().all(|&since| since <= 1), "a new fat box in tick {tick}");
     }
     // 870 neighbours each in a row and in a column, 2 · 841 across, 30 on the ground: and no others.

@@ -3,19 +3,22 @@
 //! What is found follows from bodies, colliders and contacts alone: the broad phase hands out more than that, in
 //! order, and every pair is looked at exactly here.
 
-use super::event::{Event, EventKind};
+use super::end::{Ending, Kept};
+use super::event::Event;
 use super::island::rests;
-use super::look::{Looks, See};
-use super::proxy::{Proxies, Proxy};
+use super::look::Looks;
+use super::proxy::{Course, Proxies, Proxy};
 use super::row::{Contact, Contacts};
+use super::search::{Found, Search, View};
 use super::ways::{along, common_way};
 use crate::body::{Bodies, Colliders};
 use crate::broad::Broad;
 use crate::geom::{Aabb, Vec2};
 use crate::motion::Drive;
 use crate::narrow::Manifold;
-use crate::num::Length;
+use crate::num::{Length, lane::next};
 use crate::store::{Draft, Kind, Tables};
+use crate::threads::Crew;
 
 /// How far ahead contacts are looked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,6 +30,11 @@ pub(crate) struct Margins {
 }
 
 crate::store::show!(Margins { base, tick });
+
+/// So many candidates make a piece: 5 µs where nothing has changed.
+const LOOKS: usize = 128;
+/// So many pairs make a piece, of what became of them: 5 µs.
+const OUTCOMES: usize = 256;
 
 /// No contact of the last tick.
 pub(crate) const NEW: u32 = u32::MAX;
@@ -63,7 +71,7 @@ crate::store::show!(Pair { colliders, bodies, sensor, manifold, old, row, depth,
     apart { known });
 
 impl Pair {
-    fn new(slots: [u32; 2], [a, b]: [&Proxy; 2], manifold: Manifold, old: u32) -> Pair {
+    pub(super) fn new(slots: [u32; 2], [a, b]: [&Proxy; 2], manifold: Manifold, old: u32) -> Pair {
         Pair {
             colliders: slots,
             bodies: [a.body, b.body],
@@ -95,6 +103,10 @@ pub(crate) struct Touch {
     looks: Looks,
     /// Which candidates' boxes overlap, and then space.
     close: Vec<u32>,
+    /// By piece of the candidates: space.
+    found: Vec<Found>,
+    /// By piece of the pairs: space.
+    kept: Vec<Kept>,
     /// Ordered by colliders.
     pub(crate) pairs: Vec<Pair>,
 }
@@ -107,7 +119,7 @@ impl Clone for Touch {
     }
 
     fn clone_from(&mut self, source: &Self) {
-        let Touch { broad, proxies, looks: _, close: _, pairs: _ } = source;
+        let Touch { broad, proxies, looks: _, close: _, found: _, kept: _, pairs: _ } = source;
         self.broad.clone_from(broad);
         self.proxies.clone_from(proxies);
         self.looks.clear();
@@ -174,43 +186,46 @@ impl Touch {
         contacts: &Contacts,
         drive: &Drive,
         margins: Margins,
+        crew: Crew,
     ) {
         self.pairs.clear();
         if colliders.rows.live() == 0 {
             return;
         }
         self.proxies.begin();
-        let proxies = &mut self.proxies;
-        let swept = |slot: u32| proxies.sweep(slot as usize, bodies, colliders, drive, margins);
-        let shift = common_way(bodies, margins.tick);
-        self.broad.update(shift, swept, |a, b| wanted(bodies, colliders, a as usize, b as usize));
+        let course = Course { bodies, colliders, drive, margins };
+        let (shift, swept) = (common_way(bodies, margins.tick), self.proxies.placing(course));
+        self.broad.update(shift, swept, |a, b| wanted(bodies, colliders, a as usize, b as usize), crew);
 
+        let close = self.place_close(course);
+        let Touch { broad, proxies, looks, close: list, found, kept: _, pairs } = self;
+        let view = View { proxies, bodies, contacts, drive, margins };
+        let search = Search { candidates: broad.candidates(), close: &list[..close], seen: looks.seen(), view };
+        let pieces = crew.note(search, LOOKS, found, |search, found| search.run(found));
+        let found = &mut found[..pieces];
+        // What the first one found is most of it, where there is one only.
+        core::mem::swap(pairs, &mut found[0].pairs);
+        found[1..].iter_mut().for_each(|found| pairs.append(&mut found.pairs));
+        looks.end(found);
+    }
+
+    /// Has the outlines of all pairs lie whose boxes overlap, and then keeps those whose boxes still do. How many.
+    fn place_close(&mut self, course: Course<'_>) -> usize {
+        let Course { bodies, colliders, .. } = course;
         let any_asleep = bodies.rest.any_asleep();
-        let mut old = 0;
-        self.looks.begin();
+        let mut kept = 0;
         for at in 0..self.find_close() {
-            let (a, b) = self.broad.candidates()[self.close[at] as usize];
+            let candidate = self.close[at];
+            let (a, b) = self.broad.candidates()[candidate as usize];
             let slots = [a as usize, b as usize];
             let body = slots.map(|slot| self.proxies.get(slot).body);
-            if any_asleep && rests(bodies, colliders, [a, b], body) || self.are_apart(slots, bodies, colliders, margins)
-            {
+            if any_asleep && rests(bodies, colliders, [a, b], body) || self.are_apart(slots, course) {
                 continue;
             }
-            let look = self.looks.next([a, b]);
-            let seen = See { proxies: &self.proxies, slots, bodies, drive, margins };
-            let Some(manifold) = seen.meet(look) else {
-                continue;
-            };
-            let known = look.tick < self.proxies.now();
-            let proxies = slots.map(|slot| self.proxies.get(slot));
-            while old < contacts.len() && contacts.key(old) < (a, b) {
-                old = old.saturating_add(1);
-            }
-            let lasts = old < contacts.len() && contacts.ids(old) == (proxies[0].id, proxies[1].id);
-            let old = if lasts { old as u32 } else { NEW };
-            self.pairs.push(Pair { known, ..Pair::new([a, b], proxies, manifold, old) });
+            self.close[kept] = candidate;
+            kept = next(kept);
         }
-        self.looks.end();
+        kept
     }
 
     /// Of the candidates those whose boxes overlap, as far as they are known. How many.
@@ -231,11 +246,11 @@ impl Touch {
 
     /// Has the outlines of a pair whose boxes overlapped lie as their bodies do; whether their boxes tell now that it is none.
     /// Those may have become less since then for another pair.
-    fn are_apart(&mut self, slots: [usize; 2], bodies: &Bodies, colliders: &Colliders, margins: Margins) -> bool {
+    fn are_apart(&mut self, slots: [usize; 2], course: Course<'_>) -> bool {
         for slot in slots {
             self.proxies.ask(slot);
             if !self.proxies.get(slot).turned.done {
-                self.proxies.place(slot, bodies, colliders, margins);
+                self.proxies.placing(course).place(slot);
             }
         }
         let boxes = self.proxies.boxes();
@@ -286,50 +301,23 @@ impl Touch {
     /// The contacts after the step: `outcome` says of a pair what the solver made of it. What began and
     /// ended goes to `events`; `next` is where the list is built.
     pub(crate) fn finish(
-        &self,
+        &mut self,
         contacts: &mut Contacts,
         next: &mut Contacts,
         colliders: &Colliders,
         events: &mut Vec<Event>,
-        outcome: impl Fn(&Pair) -> Contact,
+        outcome: impl Fn(&Pair) -> Contact + Sync,
+        crew: Crew,
     ) {
-        events.clear();
-        next.clear();
-        let mut old = 0;
-        let end = |contact: Contact, events: &mut Vec<Event>| {
-            if contact.touching {
-                let kind = if contact.sensor { EventKind::SensorEnd } else { EventKind::ContactEnd };
-                events.push(Event { tick: 0, kind, a: contact.a, b: contact.b });
-            }
-        };
-        for pair in &self.pairs {
-            let [a, b] = pair.colliders;
-            while old < contacts.len() && (old as u32 != pair.old && contacts.key(old) <= (a, b)) {
-                end(contacts.get(old), events);
-                old = old.saturating_add(1);
-            }
-            let before = if pair.old == NEW { Contact::default() } else { contacts.get(old) };
-            old = old.saturating_add(usize::from(pair.old != NEW));
-            let (a, b) = (colliders.id(a as usize), colliders.id(b as usize));
-            let contact = if pair.sensor {
-                Contact { a, b, touching: true, sensor: true, ..Contact::default() }
-            } else if pair.stays {
-                before
-            } else {
-                Contact { a, b, ..outcome(pair) }
-            };
-            match (before.touching, contact.touching) {
-                (false, true) if contact.sensor => events.push(Event { tick: 0, kind: EventKind::SensorBegin, a, b }),
-                (false, true) => events.push(Event { tick: 0, kind: EventKind::ContactBegin, a, b }),
-                (true, false) => end(before, events),
-                _ => {}
-            }
-            if contact.lasts() {
-                next.push(&contact);
-            }
-        }
-        for at in old..contacts.len() {
-            end(contacts.get(at), events);
+        let Touch { pairs, kept, .. } = self;
+        let ending = Ending { pairs, contacts, old: 0..contacts.len(), colliders };
+        let pieces = crew.note(ending, OUTCOMES, kept, |ending, kept| ending.run(kept, &outcome));
+        let kept = &mut kept[..pieces];
+        core::mem::swap(next, &mut kept[0].contacts);
+        core::mem::swap(events, &mut kept[0].events);
+        for kept in &mut kept[1..] {
+            next.append(&mut kept.contacts);
+            events.append(&mut kept.events);
         }
         core::mem::swap(contacts, next);
     }

@@ -5,6 +5,7 @@
 
 use super::find::Margins;
 use super::proxy::{Proxies, Proxy};
+use super::search::Found;
 use super::ways::way;
 use crate::body::Bodies;
 use crate::motion::Drive;
@@ -50,34 +51,47 @@ impl Look {
 /// What was seen in the last tick, and what is seen in this one. Ordered by colliders.
 #[derive(Debug, Default)]
 pub(super) struct Looks {
-    /// Of this tick up to `written`, from `read` on of the last one.
     list: Vec<Look>,
-    read: usize,
-    written: usize,
-    /// Of this tick, of pairs that were not seen in the last one.
+    /// Of this tick, of pairs that were not seen in the last one: space.
     added: Vec<Look>,
 }
 
-impl Looks {
-    pub(super) fn clear(&mut self) {
-        self.list.clear();
+/// What was seen of a piece of the candidates: of this tick up to `written`, from `read` on of the last one.
+pub(super) struct Seen<'l> {
+    list: &'l mut [Look],
+    read: usize,
+    written: usize,
+}
+
+impl Seen<'_> {
+    /// Of the candidates before one, and from it on.
+    pub(super) fn cut_before(self, candidate: Option<(u32, u32)>) -> (Self, Self) {
+        let Seen { list, .. } = self;
+        let end = list.len();
+        let at = candidate.map_or(end, |(a, b)| list.partition_point(|look| look.colliders < [a, b]));
+        let (before, list) = list.split_at_mut(at);
+        (Seen { list: before, read: 0, written: 0 }, Seen { list, read: 0, written: 0 })
     }
 
-    pub(super) fn begin(&mut self) {
-        (self.read, self.written) = (0, 0);
-        self.added.clear();
+    pub(super) fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// How many of them were seen again.
+    pub(super) fn kept(&self) -> usize {
+        self.written
     }
 
     /// What was seen of the next pair of this tick, if it was seen in the last one; else what was seen in tick 0.
     #[inline]
-    pub(super) fn next(&mut self, colliders: [u32; 2]) -> &mut Look {
+    pub(super) fn next<'s>(&'s mut self, colliders: [u32; 2], added: &'s mut Vec<Look>) -> &'s mut Look {
         while self.list.get(self.read).is_some_and(|look| look.colliders < colliders) {
             self.read = self.read.saturating_add(1);
         }
         if self.list.get(self.read).is_none_or(|look| look.colliders != colliders) {
-            self.added.push(Look { colliders, ..Look::default() });
-            let last = self.added.len().saturating_sub(1);
-            return &mut self.added[last];
+            added.push(Look { colliders, ..Look::default() });
+            let last = added.len().saturating_sub(1);
+            return &mut added[last];
         }
         let (read, written) = (self.read, self.written);
         if written < read {
@@ -86,11 +100,34 @@ impl Looks {
         (self.read, self.written) = (read.saturating_add(1), written.saturating_add(1));
         &mut self.list[written]
     }
+}
 
-    /// Puts what was added in its place, from the back, so that nothing is in the way.
-    pub(super) fn end(&mut self) {
-        self.list.truncate(self.written);
-        let (mut kept, mut end) = (self.written, self.written.saturating_add(self.added.len()));
+impl Looks {
+    pub(super) fn clear(&mut self) {
+        self.list.clear();
+    }
+
+    /// A tick begins.
+    pub(super) fn seen(&mut self) -> Seen<'_> {
+        self.added.clear();
+        Seen { list: &mut self.list, read: 0, written: 0 }
+    }
+
+    /// Puts together what was seen of all pieces, and what was added in its place: from the back, so that nothing is in the way.
+    pub(super) fn end(&mut self, found: &mut [Found]) {
+        let (mut kept, mut begin) = (0usize, 0usize);
+        for found in found {
+            for at in begin..begin.saturating_add(found.kept) {
+                if kept < at {
+                    self.list.swap(kept, at);
+                }
+                kept = kept.saturating_add(1);
+            }
+            begin = begin.saturating_add(found.of);
+            self.added.append(&mut found.added);
+        }
+        self.list.truncate(kept);
+        let mut end = kept.saturating_add(self.added.len());
         self.list.resize_with(end, Look::default);
         while let Some(look) = self.added.last() {
             end = end.saturating_sub(1);

@@ -1,11 +1,13 @@
 //! Contacts: what persists of two colliders that touch, which of them do in this tick, and what a game is told of it.
 
+mod end;
 mod event;
 mod find;
 mod island;
 mod look;
 mod proxy;
 mod row;
+mod search;
 #[cfg(test)]
 mod tests;
 mod wake;

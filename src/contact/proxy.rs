@@ -7,11 +7,13 @@
 use super::find::Margins;
 use super::ways::{around, rim_speed, sweep, way};
 use crate::body::{Bodies, Colliders};
+use crate::broad::Sweep;
 use crate::geom::{Aabb, Rot, Vec2};
 use crate::motion::Drive;
 use crate::num::{Angle, Friction, Length, Restitution};
-use crate::shape::Placed;
+use crate::shape::{Outline, Placed};
 use crate::store::ColliderId;
+use crate::threads::Cut;
 
 /// What is known of a collider without looking it up: [`Proxies::set`] notes it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -128,7 +130,7 @@ impl Proxies {
         self.list[slot] = proxy;
         self.boxes[slot] = around(at, [reach.saturating_neg(); 2], [reach; 2]);
         if proxy.still {
-            self.turn(slot, bodies, colliders);
+            self.placed[slot] = turn(&mut self.list[slot], self.now, bodies, colliders.outline(slot));
             self.boxes[slot] = around(at, self.placed[slot].min, self.placed[slot].max);
             // What was made of the outline that it had in the last tick was not made of this one.
             self.list[slot].turned.tick = self.now.wrapping_add(1);
@@ -136,69 +138,21 @@ impl Proxies {
         self.boxes[slot]
     }
 
-    /// A tick begins, in which all that moves is going to be [swept](Proxies::sweep).
+    /// A tick begins, in which all that moves is going to be [swept](Sweep).
     pub(super) fn begin(&mut self) {
         self.now = self.now.wrapping_add(1);
     }
 
-    /// The box around the way of a collider that moves, however it turns. What is known to be asked for gets its outline, too.
-    pub(super) fn sweep(
-        &mut self,
-        slot: usize,
-        bodies: &Bodies,
-        colliders: &Colliders,
-        drive: &Drive,
-        margins: Margins,
-    ) -> Aabb {
-        let Proxy { body, reach, turned, .. } = self.list[slot];
-        let out = reach.saturating_add(margins.base);
-        let around = sweep(bodies, drive, body as usize, [out.saturating_neg(); 2], [out; 2], margins.tick);
-        self.boxes[slot] = around;
-        let done = turned.done && turned.angle == bodies.angle.bits()[body as usize];
-        self.list[slot].turned = Turned { done, asked: false, ..turned };
-        if done || turned.asked {
-            self.place(slot, bodies, colliders, margins);
-        }
-        around
-    }
-
-    /// The outline of a collider in this tick, and the box around its way: of a moving one less than the box in which it
-    /// may turn, which the broad phase was given. Once a tick.
-    pub(super) fn place(&mut self, slot: usize, bodies: &Bodies, colliders: &Colliders, margins: Margins) {
-        let Proxy { body, reach, still, turned, .. } = self.list[slot];
-        if !turned.done {
-            self.turn(slot, bodies, colliders);
-        }
-        if still {
-            return;
-        }
-        // Turning moves no point farther than this, and none out of reach: so this box is within the one that the broad
-        // phase was given, or its history would decide what is found.
-        let placed = &self.placed[slot];
-        self.rims[slot] = rim_speed(bodies.omega.bits()[body as usize], reach);
-        let rim = way(self.rims[slot], margins.tick);
-        let spare = |out: i64| reach.saturating_sub(out.saturating_add(rim)).max(0);
-        let inward = |at: Length, by: i64| Length::from_bits(at.to_bits().saturating_add(by));
-        let Aabb { min, max } = &mut self.boxes[slot];
-        *min = Vec2::new(
-            inward(min.x, spare(placed.min[0].saturating_neg())),
-            inward(min.y, spare(placed.min[1].saturating_neg())),
-        );
-        *max = Vec2::new(
-            inward(max.x, spare(placed.max[0]).saturating_neg()),
-            inward(max.y, spare(placed.max[1]).saturating_neg()),
-        );
+    /// All of them, to be put where they are in this tick.
+    #[inline]
+    pub(super) fn placing<'p>(&'p mut self, course: Course<'p>) -> Placing<'p> {
+        let Proxies { list, placed, boxes, rims, now } = self;
+        Placing { first: 0, list, placed, boxes, rims, now: *now, course }
     }
 
     /// Notes that a collider's outline is asked for in this tick.
     pub(super) fn ask(&mut self, slot: usize) {
         self.list[slot].turned.asked = true;
-    }
-
-    fn turn(&mut self, slot: usize, bodies: &Bodies, colliders: &Colliders) {
-        let angle = bodies.angle.get(self.list[slot].body as usize);
-        self.placed[slot] = Placed::new(colliders.outline(slot), Rot::new(angle));
-        self.list[slot].turned = Turned { done: true, asked: false, angle: angle.to_bits(), tick: self.now };
     }
 
     /// Whether all of it follows from bodies and colliders.
@@ -211,4 +165,94 @@ impl Proxies {
             known == Proxy::new(slot, bodies, colliders) && (!done || self.placed[slot] == placed())
         })
     }
+}
+
+/// What ways follow from.
+#[derive(Clone, Copy)]
+pub(super) struct Course<'p> {
+    pub(super) bodies: &'p Bodies,
+    pub(super) colliders: &'p Colliders,
+    pub(super) drive: &'p Drive,
+    pub(super) margins: Margins,
+}
+
+/// Colliders from one slot on, to be put where they are in this tick.
+pub(super) struct Placing<'p> {
+    first: usize,
+    list: &'p mut [Proxy],
+    placed: &'p mut [Placed],
+    boxes: &'p mut [Aabb],
+    rims: &'p mut [i64],
+    now: u64,
+    course: Course<'p>,
+}
+
+impl Cut for Placing<'_> {
+    fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    fn cut(self, at: usize) -> (Self, Self) {
+        let Placing { first, list, placed, boxes, rims, now, course } = self;
+        let columns = ((list, placed), (boxes, rims)).cut(at);
+        let part = |first, ((list, placed), (boxes, rims))| Placing { first, list, placed, boxes, rims, now, course };
+        (part(first, columns.0), part(first.saturating_add(at), columns.1))
+    }
+}
+
+impl Sweep for Placing<'_> {
+    /// The box around the way of a collider that moves, however it turns. What is known to be asked for gets its outline, too.
+    #[inline]
+    fn sweep(&mut self, at: usize) -> (u32, Aabb) {
+        let Course { bodies, drive, margins, .. } = self.course;
+        let Proxy { body, reach, turned, .. } = self.list[at];
+        let out = reach.saturating_add(margins.base);
+        let around = sweep(bodies, drive, body as usize, [out.saturating_neg(); 2], [out; 2], margins.tick);
+        self.boxes[at] = around;
+        let done = turned.done && turned.angle == bodies.angle.bits()[body as usize];
+        self.list[at].turned = Turned { done, asked: false, ..turned };
+        if done || turned.asked {
+            self.place(at);
+        }
+        (self.first.saturating_add(at) as u32, around)
+    }
+}
+
+impl Placing<'_> {
+    /// The outline of a collider in this tick, and the box around its way: of a moving one less than the box in which it
+    /// may turn, which the broad phase was given. Once a tick.
+    pub(super) fn place(&mut self, at: usize) {
+        let Course { bodies, colliders, margins, .. } = self.course;
+        let Proxy { body, reach, still, turned, .. } = self.list[at];
+        if !turned.done {
+            let outline = colliders.outline(self.first.saturating_add(at));
+            self.placed[at] = turn(&mut self.list[at], self.now, bodies, outline);
+        }
+        if still {
+            return;
+        }
+        // Turning moves no point farther than this, and none out of reach: so this box is within the one that the broad
+        // phase was given, or its history would decide what is found.
+        let placed = &self.placed[at];
+        self.rims[at] = rim_speed(bodies.omega.bits()[body as usize], reach);
+        let rim = way(self.rims[at], margins.tick);
+        let spare = |out: i64| reach.saturating_sub(out.saturating_add(rim)).max(0);
+        let inward = |at: Length, by: i64| Length::from_bits(at.to_bits().saturating_add(by));
+        let Aabb { min, max } = &mut self.boxes[at];
+        *min = Vec2::new(
+            inward(min.x, spare(placed.min[0].saturating_neg())),
+            inward(min.y, spare(placed.min[1].saturating_neg())),
+        );
+        *max = Vec2::new(
+            inward(max.x, spare(placed.max[0]).saturating_neg()),
+            inward(max.y, spare(placed.max[1]).saturating_neg()),
+        );
+    }
+}
+
+/// A collider's outline as it lies in the tick `now`.
+fn turn(proxy: &mut Proxy, now: u64, bodies: &Bodies, outline: &Outline) -> Placed {
+    let angle = bodies.angle.get(proxy.body as usize);
+    proxy.turned = Turned { done: true, asked: false, angle: angle.to_bits(), tick: now };
+    Placed::new(outline, Rot::new(angle))
 }

@@ -131,6 +131,11 @@ impl Contacts {
         (a as u32, b as u32)
     }
 
+    /// Where the first is that does not come before these slots.
+    pub(crate) fn place_of(&self, key: (u32, u32)) -> usize {
+        self.rows.partition_point(|&[a, b, ..]| (a as u32, b as u32) < key)
+    }
+
     /// The ids of a contact's colliders.
     pub(crate) fn ids(&self, at: usize) -> (ColliderId, ColliderId) {
         let contact = self.get(at);
@@ -155,6 +160,11 @@ impl Contacts {
     pub(crate) fn push(&mut self, contact: &Contact) {
         debug_assert_eq!(contact.check(), Ok(()));
         self.rows.push(contact.pack());
+    }
+
+    /// Adds those that come next, and leaves none of them there.
+    pub(crate) fn append(&mut self, others: &mut Contacts) {
+        self.rows.append(&mut others.rows);
     }
 
     /// Hands on a table of them.

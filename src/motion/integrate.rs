@@ -22,6 +22,7 @@ use super::span::Span;
 use crate::body::Bodies;
 use crate::num::{Length, Quantity, add_sat, clamp_i64, mul, mul_add};
 use crate::store::{Cells, Show, record_enum};
+use crate::threads::Crew;
 use core::fmt;
 use core::ops::Range;
 use serde::{Deserialize, Serialize};
@@ -164,21 +165,25 @@ pub(crate) struct Fault {
     pub(crate) bound: Bound,
 }
 
+/// So many bodies make a piece, 5 µs a column; and so many pairs of a body and what attracts it.
+const SLOTS: usize = 4096;
+const PULLS: usize = 256;
+
 /// One tick of motion.
-pub(crate) fn integrate(bodies: &mut Bodies, drive: &mut Drive, faults: &mut Vec<Fault>) {
+pub(crate) fn integrate(bodies: &mut Bodies, drive: &mut Drive, faults: &mut Vec<Fault>, crew: Crew) {
     faults.extend(drive.limited.iter().map(|&slot| Fault { slot: slot as usize, bound: Bound::Acceleration }));
     for _ in 0..drive.steps {
         for at in 0..drive.stages.len() {
             match drive.stages[at] {
-                Stage::Glide => glide(bodies, drive, faults),
+                Stage::Glide => glide(bodies, drive, faults, crew),
                 Stage::Kick(span) => {
-                    kick(bodies, drive, faults, |acceleration| mul(acceleration, span.line, 63));
-                    attract(bodies, drive, span, faults);
+                    kick(bodies, drive, faults, |acceleration| mul(acceleration, span.line, 63), crew);
+                    attract(bodies, drive, span, faults, crew);
                 }
                 Stage::Drift(span) => {
                     for at in 0..bodies.rest.runs() {
                         let run = bodies.rest.run(at);
-                        drift(bodies, drive, run, span.line, span.turn, faults);
+                        drift(bodies, drive, run, [span.line, span.turn], faults, crew);
                     }
                 }
                 Stage::Decay => decay(bodies, drive),
@@ -189,7 +194,7 @@ pub(crate) fn integrate(bodies: &mut Bodies, drive: &mut Drive, faults: &mut Vec
 
 /// The whole tick: positions with the bow of constant acceleration, then velocities. Damped bodies have spans of
 /// their own.
-fn glide(bodies: &mut Bodies, drive: &Drive, faults: &mut Vec<Fault>) {
+fn glide(bodies: &mut Bodies, drive: &Drive, faults: &mut Vec<Fault>, crew: Crew) {
     let Span { line, turn } = drive.glide_span();
     // Of what sleeps nothing is damped.
     let mut damped = drive.damped.iter().peekable();
@@ -198,18 +203,25 @@ fn glide(bodies: &mut Bodies, drive: &Drive, faults: &mut Vec<Fault>) {
         while let Some(damped) = damped.next_if(|damped| (damped.slot as usize) < end) {
             let slot = damped.slot as usize;
             let next = slot.saturating_add(1);
-            drift(bodies, drive, start..slot, line, turn, faults);
-            drift(bodies, drive, slot..next, damped.line_span, damped.turn_span, faults);
+            drift(bodies, drive, start..slot, [line, turn], faults, crew);
+            drift(bodies, drive, slot..next, [damped.line_span, damped.turn_span], faults, crew);
             start = next;
         }
-        drift(bodies, drive, start..end, line, turn, faults);
+        drift(bodies, drive, start..end, [line, turn], faults, crew);
     }
     decay(bodies, drive);
-    kick(bodies, drive, faults, |change| change);
+    kick(bodies, drive, faults, |change| change, crew);
 }
 
 /// The bodies of `run`, whose velocities act for `line` (seconds) and `turn` (seconds/2π), 63 fraction bits each.
-fn drift(bodies: &mut Bodies, drive: &Drive, run: Range<usize>, line: i64, turn: i64, faults: &mut Vec<Fault>) {
+fn drift(
+    bodies: &mut Bodies,
+    drive: &Drive,
+    run: Range<usize>,
+    [line, turn]: [i64; 2],
+    faults: &mut Vec<Fault>,
+    crew: Crew,
+) {
     let Bodies { cold: _, rest: _, x, y, vx, vy, angle, omega } = bodies;
     let [bow_x, bow_y, bow_turn] = &drive.bow;
     // v with 48 fraction bits times T with 63, to the 32 of a position and the 48 of an angle.
@@ -217,23 +229,27 @@ fn drift(bodies: &mut Bodies, drive: &Drive, run: Range<usize>, line: i64, turn:
     const TO_ANGLE: u32 = 63;
 
     for (x, v, bow) in [(x, vx, bow_x), (y, vy, bow_y)] {
-        let columns = x.bits_mut()[run.clone()].iter_mut().zip(&v.bits()[run.clone()]).zip(&bow[run.clone()]);
-        for (slot, ((x, &v), &bow)) in columns.enumerate() {
-            let moved = x.saturating_add(mul_add(v, line, bow, BOW_SHIFT, TO_LENGTH));
-            *x = moved.clamp(Length::MIN.to_bits(), Length::MAX.to_bits());
-            if *x != moved {
-                faults.push(Fault { slot: run.start.saturating_add(slot), bound: Bound::Position });
+        let columns = (&mut x.bits_mut()[run.clone()], &v.bits()[run.clone()], &bow[run.clone()]);
+        crew.gather((run.clone(), columns), SLOTS, faults, |(run, (x, v, bow)), faults| {
+            for (slot, ((x, &v), &bow)) in run.zip(x.iter_mut().zip(v).zip(bow)) {
+                let moved = x.saturating_add(mul_add(v, line, bow, BOW_SHIFT, TO_LENGTH));
+                *x = moved.clamp(Length::MIN.to_bits(), Length::MAX.to_bits());
+                if *x != moved {
+                    faults.push(Fault { slot, bound: Bound::Position });
+                }
+            }
+        });
+    }
+    let columns = (&mut angle.bits_mut()[run.clone()], &omega.bits()[run.clone()], &bow_turn[run.clone()]);
+    crew.gather((run, columns), SLOTS, faults, |(run, (angle, w, bow)), faults| {
+        for (slot, ((angle, &w), &bow)) in run.zip(angle.iter_mut().zip(w).zip(bow)) {
+            let turned = turn_by(*angle, mul_add(w, turn, bow, BOW_SHIFT, TO_ANGLE));
+            *angle = turned.0;
+            if turned.1 {
+                faults.push(Fault { slot, bound: Bound::Turns });
             }
         }
-    }
-    let columns = angle.bits_mut()[run.clone()].iter_mut().zip(&omega.bits()[run.clone()]).zip(&bow_turn[run.clone()]);
-    for (slot, ((angle, &w), &bow)) in columns.enumerate() {
-        let turned = turn_by(*angle, mul_add(w, turn, bow, BOW_SHIFT, TO_ANGLE));
-        *angle = turned.0;
-        if turned.1 {
-            faults.push(Fault { slot: run.start.saturating_add(slot), bound: Bound::Turns });
-        }
-    }
+    });
 }
 
 /// An angle turned further. The fraction of a turn is always exact; the count of whole turns stops at ±32 767, and
@@ -266,7 +282,7 @@ fn decay(bodies: &mut Bodies, drive: &Drive) {
 
 /// Velocities by what `change` makes of the prepared kicks.
 #[inline]
-fn kick(bodies: &mut Bodies, drive: &Drive, faults: &mut Vec<Fault>, change: impl Fn(i64) -> i64) {
+fn kick(bodies: &mut Bodies, drive: &Drive, faults: &mut Vec<Fault>, change: impl Fn(i64) -> i64 + Sync, crew: Crew) {
     let Bodies { cold: _, rest, x: _, y: _, vx, vy, angle: _, omega } = bodies;
     let [kick_x, kick_y, kick_turn] = &drive.kick;
     for (velocity, kicks, bound) in [
@@ -275,29 +291,38 @@ fn kick(bodies: &mut Bodies, drive: &Drive, faults: &mut Vec<Fault>, change: imp
         (omega.bits_mut(), kick_turn, Bound::AngularVelocity),
     ] {
         for run in rest.all_runs() {
-            for (slot, (v, &by)) in velocity[run.clone()].iter_mut().zip(&kicks[run.clone()]).enumerate() {
-                add(v, change(by), run.start.saturating_add(slot), bound, faults);
-            }
+            let columns = (&mut velocity[run.clone()], &kicks[run.clone()]);
+            crew.gather((run, columns), SLOTS, faults, |(run, (velocity, kicks)), faults| {
+                for (slot, (v, &by)) in run.zip(velocity.iter_mut().zip(kicks)) {
+                    add(v, change(by), slot, bound, faults);
+                }
+            });
         }
     }
 }
 
 /// Velocities of dynamic bodies by attraction, at the bodies' present positions.
-fn attract(bodies: &mut Bodies, drive: &mut Drive, span: Span, faults: &mut Vec<Fault>) {
+fn attract(bodies: &mut Bodies, drive: &mut Drive, span: Span, faults: &mut Vec<Fault>, crew: Crew) {
     if drive.sources.is_empty() {
         return;
     }
     drive.follow(bodies);
     let Bodies { cold, rest, x, y, vx, vy, angle: _, omega: _ } = bodies;
     let (x, y, vx, vy) = (x.bits(), y.bits(), vx.bits_mut(), vy.bits_mut());
-    for slot in rest.all_runs().flatten().filter(|&slot| cold.value(slot).is_dynamic()) {
-        let wide = gravity::pull(&drive.sources, slot, x[slot], y[slot]);
-        let pull = wide.map(clamp_i64);
-        if pull.map(i128::from) != wide {
-            faults.push(Fault { slot, bound: Bound::Acceleration });
-        }
-        add(&mut vx[slot], mul(pull[0], span.line, 63), slot, Bound::Velocity, faults);
-        add(&mut vy[slot], mul(pull[1], span.line, 63), slot, Bound::Velocity, faults);
+    let least = PULLS.checked_div(drive.sources.len()).unwrap_or(0).max(1);
+    for run in rest.all_runs() {
+        let columns = (&mut vx[run.clone()], &mut vy[run.clone()]);
+        crew.gather((run, columns), least, faults, |(run, (vx, vy)), faults| {
+            for (slot, (vx, vy)) in run.zip(vx.iter_mut().zip(vy)).filter(|&(slot, _)| cold.value(slot).is_dynamic()) {
+                let wide = gravity::pull(&drive.sources, slot, x[slot], y[slot]);
+                let pull = wide.map(clamp_i64);
+                if pull.map(i128::from) != wide {
+                    faults.push(Fault { slot, bound: Bound::Acceleration });
+                }
+                add(vx, mul(pull[0], span.line, 63), slot, Bound::Velocity, faults);
+                add(vy, mul(pull[1], span.line, 63), slot, Bound::Velocity, faults);
+            }
+        });
     }
 }
 

@@ -6,6 +6,7 @@
 use crate::World;
 use crate::solver::Substep;
 use crate::store::{DecodeError, Draft, Reader, Sheet, Tables, hash_bytes, put, put_count, put_text, take_text};
+use crate::threads::Threads;
 use crate::world::{Stage, Watch};
 use core::ops::Range;
 
@@ -83,7 +84,7 @@ impl Evidence {
     /// Advances the world by one tick, as [`World::step`], and keeps what memory holds meanwhile.
     pub fn of_step(world: &mut World) -> Evidence {
         let mut evidence = Evidence::default();
-        evidence.take(world, &mut Draft::default(), Origin::Recomputed);
+        evidence.take(world, &mut Draft::default(), Origin::Recomputed, &Threads::default());
         evidence
     }
 
@@ -97,9 +98,9 @@ impl Evidence {
     }
 
     /// Steps the world and keeps the tick, in the memory that this has.
-    pub(super) fn take(&mut self, world: &mut World, draft: &mut Draft, origin: Origin) {
+    pub(super) fn take(&mut self, world: &mut World, draft: &mut Draft, origin: Origin, threads: &Threads) {
         self.begin(world, draft, origin);
-        world.step_through(&mut Taker { evidence: self, draft });
+        threads.work(world.effort(), |crew| world.step_through(&mut Taker { evidence: self, draft }, crew));
         (self.tick, self.hash) = (world.tick(), world.hash());
         world.save_into(&mut self.after);
     }

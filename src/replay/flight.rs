@@ -3,6 +3,7 @@
 use super::evidence::{Evidence, Origin};
 use crate::World;
 use crate::store::Draft;
+use crate::threads::Threads;
 
 /// Steps a world and keeps evidence of the last ticks, for the day on which an alarm rings some ticks late.
 ///
@@ -38,13 +39,18 @@ impl Flight {
 
     /// Advances the world by one tick, as [`World::step`], and keeps it.
     pub fn step(&mut self, world: &mut World) {
+        self.step_on(world, &Threads::default());
+    }
+
+    /// The same by several threads, as [`World::step_on`].
+    pub fn step_on(&mut self, world: &mut World, threads: &Threads) {
         if self.ticks.is_empty() {
-            return world.step();
+            return world.step_on(threads);
         }
         let tick = world.tick().saturating_add(1);
         let known = self.ticks[..self.used].iter().position(|kept| kept.tick() == tick);
         let at = known.unwrap_or(self.next);
-        self.ticks[at].take(world, &mut self.draft, Origin::Taken);
+        self.ticks[at].take(world, &mut self.draft, Origin::Taken, threads);
         if known.is_none() {
             self.next = at.saturating_add(1).checked_rem(self.ticks.len()).unwrap_or(0);
             self.used = self.used.max(at.saturating_add(1));

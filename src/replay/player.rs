@@ -7,6 +7,7 @@ use super::format::{Found, RecordReader, tag};
 use super::keyframe::{Head, Keyframe, States};
 use crate::World;
 use crate::store::{Reader, Record};
+use crate::threads::Threads;
 use crate::world::{Command, Commands};
 use std::io::Read;
 
@@ -58,6 +59,7 @@ pub(super) enum Step {
 pub struct Player<R> {
     records: RecordReader<R>,
     world: World,
+    threads: Threads,
     ticks: u64,
     commands: u64,
     history: u64,
@@ -112,6 +114,7 @@ impl<R: Read> Player<R> {
         Player {
             records,
             world,
+            threads: Threads::default(),
             ticks: 0,
             commands: 0,
             history,
@@ -157,6 +160,11 @@ impl<R: Read> Player<R> {
         self.world
     }
 
+    /// Has these threads step the world from now on: the hashes are the same.
+    pub fn use_threads(&mut self, threads: &Threads) {
+        self.threads = threads.clone();
+    }
+
     /// The ticks played so far, from the start of the recording.
     pub fn ticks(&self) -> u64 {
         self.ticks
@@ -178,7 +186,8 @@ impl<R: Read> Player<R> {
     /// Errors: the first divergence, or what is wrong with the file, by place. A file cut off gives
     /// [`ReplayError::Truncated`] after its last whole tick.
     pub fn step(&mut self) -> Result<Option<u64>, ReplayError> {
-        let hash = self.step_by(World::step)?;
+        let threads = self.threads.clone();
+        let hash = self.step_by(|world| world.step_on(&threads))?;
         self.compare(hash)
     }
 

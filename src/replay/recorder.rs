@@ -6,6 +6,7 @@ use super::format::{RecordWriter, tag};
 use super::keyframe::{Head, Keyframe, States, encode_index, history};
 use crate::World;
 use crate::store::{Record, put};
+use crate::threads::Threads;
 use crate::world::{Command, CommandError, Commands, Reply};
 use std::io::{self, Write};
 
@@ -60,6 +61,7 @@ pub struct Recorder<W> {
     states: States,
     keyframes: Vec<Keyframe>,
     flight: Option<Flight>,
+    threads: Threads,
     /// The first tick at which memory did not hold what it had been given.
     fault: Option<u64>,
     scratch: Vec<u8>,
@@ -96,6 +98,7 @@ impl<W: Write> Recorder<W> {
             states,
             keyframes: Vec::new(),
             flight: (options.flight_ticks > 0).then(|| Flight::new(options.flight_ticks)),
+            threads: Threads::default(),
             fault: None,
             scratch: Vec::new(),
             error: None,
@@ -107,14 +110,19 @@ impl<W: Write> Recorder<W> {
         &self.world
     }
 
+    /// Has these threads step the world from now on. The recording is the same, to the byte.
+    pub fn use_threads(&mut self, threads: &Threads) {
+        self.threads = threads.clone();
+    }
+
     /// Advances the world by one tick and records it.
     ///
     /// Never fails: where writing does, the simulation goes on, and [`Recorder::error`] and [`Recorder::finish`]
     /// say so.
     pub fn step(&mut self) {
         match &mut self.flight {
-            Some(flight) => flight.step(&mut self.world),
-            None => self.world.step(),
+            Some(flight) => flight.step_on(&mut self.world, &self.threads),
+            None => self.world.step_on(&self.threads),
         }
         self.ticks = self.ticks.saturating_add(1);
         self.write(if self.pending.len() == HASH { tag::IDLE } else { tag::TICK });

@@ -38,6 +38,7 @@ use crate::body::{Bodies, Colliders};
 use crate::contact::{Collision, Contact, Contacts, NEW, Pair, Touch};
 use crate::motion::{Drive, Fault};
 use crate::num::mul;
+use crate::threads::Crew;
 use color::Colors;
 use direct::{Direct, GIVEN_UP, Rows};
 use fast::{strikes, swings};
@@ -62,6 +63,9 @@ use turning::{Turning, turns};
 /// better and a tick takes 1.6 times as long.
 const RELAX: u32 = 5;
 
+/// So many pairs make a piece: 4 µs.
+const PAIRS: usize = 512;
+
 /// What two ways of computing how far two bodies overlap may differ by: 10 nm, Q32 m.
 const ROUNDING: i64 = 43;
 
@@ -71,6 +75,8 @@ pub(crate) struct Solver {
     /// By slot of a body; kept by commands.
     pub(crate) mobilities: Vec<Mobility>,
     pub(crate) scales: Scales,
+    /// By pair, whether it comes too fast for rows.
+    coming: Vec<bool>,
     movers: Movers,
     before: Vec<[i64; 6]>,
     free: Vec<bool>,
@@ -111,10 +117,18 @@ impl Clone for Solver {
 impl Solver {
     /// Rows for the pairs of this tick that touch or come near slowly, while the bodies are where it begins; what comes
     /// fast is left to strike.
-    pub(crate) fn prepare(&mut self, touch: &mut Touch, contacts: &Contacts, bodies: &Bodies, drive: &Drive) {
+    pub(crate) fn prepare(
+        &mut self,
+        touch: &mut Touch,
+        contacts: &Contacts,
+        bodies: &Bodies,
+        drive: &Drive,
+        crew: Crew,
+    ) {
         let Solver {
             mobilities,
             scales,
+            coming,
             movers,
             before,
             free,
@@ -146,9 +160,16 @@ impl Solver {
         squeezed.clear();
         fast.clear();
         turning.clear();
+        coming.resize(touch.pairs.len(), false);
+        crew.share((touch.pairs.as_slice(), coming.as_mut_slice()), PAIRS, |(pairs, coming)| {
+            for (pair, coming) in pairs.iter().zip(coming) {
+                let swings = || swings(pair, bodies, drive, mobilities, scales);
+                *coming = !pair.stays
+                    && (pair.manifold.count == 0 || strikes(pair, bodies, drive, scales, false) || swings());
+            }
+        });
         for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !(pair.sensor || pair.stays)) {
-            let swings = || swings(pair, bodies, drive, mobilities, scales);
-            if pair.manifold.count == 0 || strikes(pair, bodies, drive, scales, false) || swings() {
+            if coming[at] {
                 fast.push(at as u32);
             } else {
                 for slot in pair.bodies {
@@ -209,7 +230,7 @@ impl Solver {
         blocks.resize_with(colors.blocks, Block::default);
 
         let basis = Basis { pairs: &touch.pairs, rows, places, heavy, contacts, bodies, mobilities, scales };
-        basis.write(blocks, colors, *kernel);
+        basis.write(blocks, colors, *kernel, crew);
         let rows = Rows { places, modes, seats: &colors.seats, blocks };
         direct.build(islands, &rows, movers, mobilities, scales);
     }
@@ -226,6 +247,7 @@ impl Solver {
         drive: &Drive,
         faults: &mut Vec<Fault>,
         mut watch: impl FnMut(u32, Substep<'_>),
+        crew: Crew,
     ) {
         let Solver {
             mobilities,
@@ -259,7 +281,7 @@ impl Solver {
             }
             blocks[swept..].iter().for_each(|block| block.warm_start(&mut movers.lanes));
             for substep in 1..=scales.substeps {
-                movers.begin(substep == 1);
+                movers.begin(substep == 1, crew);
                 for &pair in &*turning {
                     let anew = Turning { bodies, colliders, mobilities, scales, before };
                     let pair = &mut touch.pairs[pair as usize];
@@ -274,7 +296,7 @@ impl Solver {
                 }
                 direct.solve::<true>(blocks, &mut movers.lanes, scales);
                 movers.hold_back(mobilities);
-                movers.drift(scales);
+                movers.drift(scales, crew);
                 let seats = &colors.seats;
                 let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats, blocks, repose };
                 timeline.run(scales.span(substep), &stage, movers, faults);

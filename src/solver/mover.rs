@@ -10,7 +10,11 @@ use super::squeeze::Squeeze;
 use crate::body::Bodies;
 use crate::motion::{Drive, turn_by};
 use crate::num::{Velocity, clamp_i64, div, lane, mul, round_shift};
+use crate::threads::Crew;
 use core::mem::replace;
+
+/// So many make a piece: 5 µs.
+const MOVERS: usize = 512;
 
 /// What rows read and write.
 ///
@@ -181,8 +185,8 @@ impl Movers {
     /// What contacts did to a body in a substep is the sum of its rows' accumulated impulses, so adding that again is
     /// warm starting, without going through the rows: forces and contacts together did now − begin + cut. In the first
     /// substep the rows have added theirs already.
-    pub(crate) fn begin(&mut self, first: bool) {
-        for (mover, course) in self.lanes.iter_mut().zip(&mut self.courses).skip(1) {
+    pub(crate) fn begin(&mut self, first: bool, crew: Crew) {
+        self.each(crew, |mover, course| {
             let now = [mover.v[0], mover.v[1], mover.w];
             let change = if first {
                 course.kick
@@ -191,13 +195,23 @@ impl Movers {
                 [0, 1, 2].map(|axis| lane::add(lane::sub(now[axis], begin[axis]), course.cut[axis]))
             };
             [mover.v[0], mover.v[1], mover.w] = lane::held([0, 1, 2].map(|axis| lane::add(now[axis], change[axis])));
-        }
+        });
+    }
+
+    /// Does something to each, whatever the others are.
+    #[inline]
+    fn each(&mut self, crew: Crew, work: impl Fn(&mut Mover, &mut Course) + Sync) {
+        crew.share((&mut self.lanes[1..], &mut self.courses[1..]), MOVERS, |(lanes, courses)| {
+            for (mover, course) in lanes.iter_mut().zip(courses) {
+                work(mover, course);
+            }
+        });
     }
 
     /// Positions by the velocities that rows read, after bounding these.
-    pub(crate) fn drift(&mut self, scales: &Scales) {
+    pub(crate) fn drift(&mut self, scales: &Scales, crew: Crew) {
         const LIMIT: i64 = SPEED_MAX << 48;
-        for (mover, course) in self.lanes.iter_mut().zip(&mut self.courses).skip(1) {
+        self.each(crew, |mover, course| {
             let limits = [LIMIT, LIMIT, course.spin_max];
             let now = [mover.v[0], mover.v[1], mover.w];
             let free = |axis: usize| lane::sub(now[axis], course.begin[axis]) == course.kick[axis];
@@ -214,7 +228,7 @@ impl Movers {
                 *sum = lane::add(*sum, lane::round::<28>(v));
             }
             mover.go(&course.sum, scales);
-        }
+        });
     }
 
     /// The place of the body in a slot, 0 if it has none.

@@ -6,7 +6,7 @@ mod play;
 use play::scene::{Scene, TICKS};
 use play::{SEEDS, golden, random};
 use std::collections::{BTreeMap, BTreeSet};
-use tamias2d::{BodyId, Command, World};
+use tamias2d::{BodyId, Command, Threads, World};
 
 /// How often what occurred.
 #[derive(Default)]
@@ -67,7 +67,7 @@ fn everything_occurs_in_the_scenes() {
         let mut scene = Scene::new(seed);
         while scene.world.tick() < TICKS {
             let (before, mut quiet) = (scene.world.clone(), true);
-            scene.tick(|command, accepted| {
+            scene.tick(&Threads::default(), |command, accepted| {
                 quiet = false;
                 seen.command(command, accepted);
             });
@@ -153,18 +153,18 @@ fn everything_occurs_in_the_scenes() {
 #[test]
 fn scenes_hold_their_invariants_and_play_twice_alike() {
     for seed in SEEDS {
-        let lines = random(seed).expect("the invariants hold");
+        let lines = random(seed, &Threads::default()).expect("the invariants hold");
         assert_eq!(lines.lines().count() as u64, TICKS + 1);
-        assert!(lines == random(seed).expect("as before"), "scene {seed} differs from itself");
+        assert!(lines == random(seed, &Threads::default()).expect("as before"), "scene {seed} differs from itself");
     }
 }
 
 #[test]
 fn a_recording_that_does_not_play_has_no_stream() {
     let replay = include_bytes!("../../replays/pusher.replay");
-    assert_eq!(golden("pusher", replay).expect("it plays").lines().count(), 301);
+    assert_eq!(golden("pusher", replay, &Threads::default()).expect("it plays").lines().count(), 301);
     let mut broken = replay.to_vec();
     let middle = broken.len() / 2;
     broken[middle] ^= 1;
-    golden("pusher", &broken).expect_err("a bit was flipped");
+    golden("pusher", &broken, &Threads::default()).expect_err("a bit was flipped");
 }

@@ -3,6 +3,7 @@
 
 use crate::play::{SEEDS, golden, random};
 use std::cell::RefCell;
+use tamias2d::Threads;
 
 thread_local! {
     /// What the page wrote, and what it is answered.
@@ -24,7 +25,7 @@ pub extern "C" fn tamias_room(length: usize) -> *mut u8 {
 #[unsafe(no_mangle)]
 pub extern "C" fn tamias_golden() -> usize {
     let replay = BYTES.take();
-    answer(golden("", &replay))
+    answer(golden("", &replay, &Threads::default()))
 }
 
 /// How many scenes there are, from 1 on.
@@ -38,7 +39,7 @@ pub extern "C" fn tamias_scenes() -> u32 {
 // SAFETY: no other symbol has this name.
 #[unsafe(no_mangle)]
 pub extern "C" fn tamias_scene(seed: u32) -> usize {
-    answer(random(seed.into()))
+    answer(random(seed.into(), &Threads::default()))
 }
 
 /// Where the last answer is, until the next call of another function: lines, or `!` and what is wrong.

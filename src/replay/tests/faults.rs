@@ -7,6 +7,7 @@ use crate::replay::evidence::{Evidence, Origin, Taker};
 use crate::replay::finding::{Divergence, Finding};
 use crate::solver::Substep;
 use crate::store::Draft;
+use crate::threads::Crew;
 use crate::world::{Stage, Watch};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
@@ -319,7 +320,7 @@ fn evidence_with(world: &World, when: When, fault: impl FnMut(&mut World) -> Don
     evidence.begin(&world, &mut draft, Origin::Taken);
     let taker = Taker { evidence: &mut evidence, draft: &mut draft };
     let mut faulty = Faulty { taker, when, fault, done: &mut done, over: false };
-    let _ = catch_unwind(AssertUnwindSafe(|| world.step_through(&mut faulty)));
+    let _ = catch_unwind(AssertUnwindSafe(|| world.step_through(&mut faulty, Crew::ALONE)));
     (evidence, done)
 }
 
@@ -501,7 +502,7 @@ fn a_fault_between_substeps_is_named_exactly() {
         let taker = Taker { evidence: &mut evidence, draft: &mut draft };
         let mut inside = Inside { taker, at, dice: Dice(seed), done: None };
         let mut copy = world.clone();
-        let _ = catch_unwind(AssertUnwindSafe(|| copy.step_through(&mut inside)));
+        let _ = catch_unwind(AssertUnwindSafe(|| copy.step_through(&mut inside, Crew::ALONE)));
         // Without contacts a tick has no substeps.
         let Some((_, before, after)) = inside.done else { continue };
         named += 1;

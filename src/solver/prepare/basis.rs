@@ -8,6 +8,7 @@ use super::super::scales::Scales;
 use super::{Joint, Joints};
 use crate::body::Bodies;
 use crate::contact::{Contact, Contacts, Pair};
+use crate::threads::{Crew, Cut};
 
 /// What rows are made of.
 pub(crate) struct Basis<'s> {
@@ -23,6 +24,23 @@ pub(crate) struct Basis<'s> {
     pub(crate) scales: &'s Scales,
 }
 
+/// So many blocks make a piece: 6 µs.
+const BLOCKS: usize = 32;
+
+/// Who sits in blocks, by seat.
+struct Seats<'s>(&'s [u32]);
+
+impl Cut for Seats<'_> {
+    fn len(&self) -> usize {
+        self.0.len() / LANES
+    }
+
+    fn cut(self, at: usize) -> (Self, Self) {
+        let (before, after) = self.0.split_at(at.saturating_mul(LANES));
+        (Seats(before), Seats(after))
+    }
+}
+
 /// What a contact's rows are made of.
 struct Part<'s> {
     pair: &'s Pair,
@@ -35,10 +53,14 @@ struct Part<'s> {
 
 impl<'s> Basis<'s> {
     /// Writes every contact where it sits.
-    pub(crate) fn write(&self, blocks: &mut [Block], colors: &Colors, kernel: Kernel) {
+    pub(crate) fn write(&self, blocks: &mut [Block], colors: &Colors, kernel: Kernel, crew: Crew) {
+        crew.share((blocks, Seats(&colors.sitting)), BLOCKS, |(blocks, seats)| self.write_piece(blocks, seats, kernel));
+    }
+
+    fn write_piece(&self, blocks: &mut [Block], Seats(sitting): Seats<'_>, kernel: Kernel) {
         // Two in turn: numbers that were put down one by one cannot be taken up side by side at once.
         let mut joints = [Joints::default(), Joints::default()];
-        let mut seats = colors.sitting.chunks_exact(LANES);
+        let mut seats = sitting.chunks_exact(LANES);
         let mut before: &[u32] = &[];
         for at in 0..=blocks.len() {
             let sitting = seats.next().unwrap_or(&[]);

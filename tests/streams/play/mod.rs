@@ -9,7 +9,7 @@ pub mod scene;
 
 use scene::{Scene, TICKS};
 use tamias2d::replay::Player;
-use tamias2d::{ColliderId, Collision, Event, Filter, Frame, Length, Pace, Vec2, World};
+use tamias2d::{ColliderId, Collision, Event, Filter, Frame, Length, Pace, Threads, Vec2, World};
 
 /// The seeds of the scenes.
 pub const SEEDS: std::ops::RangeInclusive<u64> = 1..=20;
@@ -96,9 +96,10 @@ fn line(name: &str, world: &World) -> String {
 }
 
 /// The lines of a recording, from its beginning to its end. Errors: what does not give the recorded hashes.
-pub fn golden(name: &str, replay: &[u8]) -> Result<String, String> {
+pub fn golden(name: &str, replay: &[u8], threads: &Threads) -> Result<String, String> {
     let wrong = |error| format!("{name}: {error}");
     let mut player = Player::new(replay).map_err(wrong)?;
+    player.use_threads(threads);
     let mut lines = line(name, player.world());
     while player.step().map_err(wrong)?.is_some() {
         lines += &line(name, player.world());
@@ -107,11 +108,11 @@ pub fn golden(name: &str, replay: &[u8]) -> Result<String, String> {
 }
 
 /// The lines of a scene. Errors: an invariant that is broken, or a world that does not go on as itself.
-pub fn random(seed: u64) -> Result<String, String> {
+pub fn random(seed: u64, threads: &Threads) -> Result<String, String> {
     let (name, mut scene) = (format!("scene{seed}"), Scene::new(seed));
     let mut lines = line(&name, &scene.world);
     while scene.world.tick() < TICKS {
-        scene.tick(|_, _| {});
+        scene.tick(threads, |_, _| {});
         lines += &line(&name, &scene.world);
         doubt(&mut scene.world).map_err(|wrong| format!("{name}, after tick {}: {wrong}", scene.world.tick()))?;
     }

@@ -4,7 +4,7 @@
 use super::draws::Draws;
 use tamias2d::{
     Attractor, AttractorId, BodyDef, BodyId, BodyKind, ColliderDef, ColliderId, Command, Commands, Filter, Integrator,
-    Length, Reply, Shape, Sleeping, Vec2, Velocity, World, WorldDef,
+    Length, Reply, Shape, Sleeping, Threads, Vec2, Velocity, World, WorldDef,
 };
 
 /// So many ticks are played of each scene.
@@ -72,7 +72,7 @@ impl Scene {
     }
 
     /// Commands and a step; `heard` is told which commands, and whether they were accepted.
-    pub fn tick(&mut self, mut heard: impl FnMut(&Command, bool)) {
+    pub fn tick(&mut self, threads: &Threads, mut heard: impl FnMut(&Command, bool)) {
         let within = self.world.tick() % PERIOD;
         let commands = match within {
             0..20 => 4,
@@ -89,7 +89,7 @@ impl Scene {
             let command = if self.draws.chance(50) { Command::Wake { body } } else { Command::PutToSleep { body } };
             self.carry_out(command, &mut heard);
         }
-        self.world.step();
+        self.world.step_on(threads);
     }
 
     fn carry_out(&mut self, command: Command, heard: &mut impl FnMut(&Command, bool)) {
