@@ -1,6 +1,6 @@
 //! Several threads step one world: the same bits as one, whatever is cut up between them and wherever.
 #![cfg(feature = "threads")]
-#![allow(clippy::arithmetic_side_effects, reason = "tests, not the engine")]
+#![allow(clippy::disallowed_types, clippy::arithmetic_side_effects, reason = "tests, not the engine")]
 
 mod common;
 #[path = "streams/play/mod.rs"]
@@ -129,7 +129,7 @@ fn large_worlds_are_the_same() {
     }
     alike(&flight, 8, &threads);
     flight.step_on(&threads[2]);
-    assert!(flight.status().entries().len() > 600);
+    assert!(!flight.status().is_clear());
 }
 
 /// Bodies that attract each other, some of them damped.
