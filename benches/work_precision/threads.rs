@@ -2,12 +2,13 @@
 
 use crate::clock::Cost;
 use crate::scenes::{Scene, growth};
-use crate::stage::{Setting, Stage};
+use crate::stage::{Setting, Stage, Trial};
 use std::time::Instant;
 use tamias2d::{Threads, World};
 
 /// Names, scenes of so many bodies, and the ticks before the first that is timed.
-const SCENES: [(&str, fn(i64) -> Scene, i64, u64); 7] = [
+type Case = (&'static str, fn(i64) -> Scene, i64, u64);
+const SCENES: [Case; 7] = [
     ("pyramid", growth::pyramid, 820, 60),
     ("pyramid", growth::pyramid, 5050, 60),
     ("pyramid", growth::pyramid, 20_100, 60),
