@@ -4,12 +4,12 @@
 
 mod common;
 #[path = "streams/play/mod.rs"]
-mod play;
+mod streams;
 
 use common::{Storm, disc, num, rectangle, world};
-use play::{SEEDS, golden, random};
 use std::path::Path;
 use std::thread::scope;
+use streams::{SEEDS, golden, random};
 use tamias2d::replay::{Flight, Player, Recorder};
 use tamias2d::{BodyDef, BodyKind, ColliderDef, Commands, Mu, Threads, Vec2, World};
 
@@ -76,42 +76,38 @@ fn pile(count: u32) -> World {
     world
 }
 
-#[test]
-fn goldens_are_the_same() {
+/// Goldens and random scenes, each by one of the counts, or by all.
+fn play(all: bool) {
+    let threads = eager();
+    let alike = |name: &str, at: usize, lines: &dyn Fn(&Threads) -> Result<String, String>| {
+        let alone = lines(&Threads::default()).expect("it plays");
+        for (_, threads) in threads.iter().enumerate().filter(|&(count, _)| all || count == at % COUNTS.len()) {
+            assert!(lines(threads).expect("it plays") == alone, "{name} by {} threads", threads.count());
+        }
+    };
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("replays");
-    let mut count = 0;
-    for entry in folder.read_dir().expect("it is there") {
-        let path = entry.expect("it can be read").path();
-        if path.extension().is_none_or(|extension| extension != "replay") {
-            continue;
-        }
-        let replay = std::fs::read(&path).expect("it can be read");
-        let alone = golden("", &replay, &Threads::default()).expect("it plays");
-        for threads in eager() {
-            let lines = golden("", &replay, &threads).expect("it plays");
-            assert!(lines == alone, "{} by {} threads", path.display(), threads.count());
-        }
-        count += 1;
+    let entries = folder.read_dir().expect("it is there").map(|entry| entry.expect("it can be read").path());
+    let mut replays: Vec<_> = entries.filter(|path| path.extension().is_some_and(|end| end == "replay")).collect();
+    replays.sort();
+    assert!(replays.len() > 10);
+    for (at, path) in replays.iter().enumerate() {
+        let replay = std::fs::read(path).expect("it can be read");
+        alike(&path.display().to_string(), at, &|threads| golden("", &replay, threads));
     }
-    assert!(count > 10, "{count} goldens");
+    for seed in SEEDS {
+        alike(&format!("scene {seed}"), seed as usize, &|threads| random(seed, threads));
+    }
 }
 
 #[test]
-fn random_scenes_are_the_same() {
-    let threads = eager();
-    for seed in SEEDS {
-        let alone = random(seed, &Threads::default()).expect("the invariants hold");
-        // Each with two of the counts, and two with all.
-        for (at, threads) in threads.iter().enumerate() {
-            if seed < 3 || [0, 1].contains(&((seed as usize + at) % 5)) {
-                assert!(
-                    random(seed, threads).expect("they hold") == alone,
-                    "scene {seed} by {} threads",
-                    threads.count()
-                );
-            }
-        }
-    }
+fn goldens_and_random_scenes_are_the_same() {
+    play(false);
+}
+
+#[test]
+#[ignore = "minutes; .ci/cross does it with one, two and eight"]
+fn goldens_and_random_scenes_are_the_same_by_every_count() {
+    play(true);
 }
 
 /// Worlds that are cut up as in a game: where that pays.
