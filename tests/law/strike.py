@@ -3,7 +3,7 @@
 Velocities and impulses are Q48 over 2^k; an impulse λ is carried as λ·(1/m_a + 1/m_b), a velocity.
 """
 
-from ints import clamp, cross, div, dot, mul, sat64
+from ints import clamp, cross, div, dot, mul, sat64, sat128
 
 LIMIT = 1 << 61
 ROUNDS = (32, 256)
@@ -143,7 +143,7 @@ class Strike:
         # It slides: f = ±μ·(N − y·(f − f₀)), for f.
         rough = -self.rough if then < 0 else self.rough
         by = mul(rough, yields, 48) + (1 << 48)
-        bound = div(rough * (load + mul(yields, now, 48)), by) if by > 1 << 45 else mul(rough, load, 48)
+        bound = sat64(div(rough * (load + mul(yields, now, 48)), by)) if by > 1 << 45 else mul(rough, load, 48)
         return (bound if (bound < 0) == (rough < 0) else 0) - now
 
     def slope(self, across):
@@ -163,7 +163,7 @@ class Strike:
         else:
             return None
         left = self.friction.kappa - (mul(across[0], reply[0], 48) + mul(across[1], reply[1], 48))
-        return (div(1 << 110, left), reply[0] + reply[1]) if left > self.friction.kappa >> 6 else None
+        return (sat64(div(1 << 110, left)), reply[0] + reply[1]) if left > self.friction.kappa >> 6 else None
 
     def press(self, apart):
         """Gives the points what they want; their speeds `apart` follow."""
@@ -212,7 +212,7 @@ def gains(weights, before, after):
         if mantissa == 0 and any(b):
             return False
         grown = [((y - x) * (y + x) >> 48) - (abs(x) + abs(y) >> 38) - 1 for x, y in zip(b, a)]
-        total = grown[0] + grown[1] + (grown[2] * turning >> 48)
+        total = grown[0] + grown[1] + (sat128(grown[2] * turning) >> 48)
         gain += total * mantissa >> min(top - exponent, 120)
     return gain > 0
 
