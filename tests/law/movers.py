@@ -218,5 +218,5 @@ class Movers:
                 faults.append((slot, TURNS))
             for axis, column in enumerate((state.vx, state.vy)):
                 column[slot] = sat64(begin.v[axis] + (mover.v[axis] - mover.start[axis] << k))
-            spun = mover.mobility.over_sigma(mover.v[2] - mover.start[2], 48 - k, 48)
+            spun = mover.mobility.over_sigma(sat64(mover.v[2] - mover.start[2]), 48 - k, 48)
             state.omega[slot] = sat64(begin.omega + spun)
