@@ -20,7 +20,7 @@ use tamias2d::LAW;
 use trials::{Kind, play, record};
 
 /// Of each kind, so many worlds are played in every test run, and so many in all.
-const SHORT: [u64; 4] = [1500, 80, 80, 150];
+const SHORT: [u64; 4] = [3000, 100, 100, 250];
 const LONG: [u64; 4] = [20_000, 2000, 2000, 4000];
 /// So many are in a line of the file.
 const LINE: usize = 48;
