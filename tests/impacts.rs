@@ -14,7 +14,7 @@ use solid::{
     add, energy, fixed, get, mass_of, moving, polygon, scaled_world, solid, spin, surface, turned, weighing,
     worst_overlap,
 };
-use tamias2d::{BodyDef, BodyId, BodyKind, ColliderDef, World};
+use tamias2d::{BodyDef, BodyId, BodyKind, ColliderDef, Inertia, World};
 
 const G: f64 = 9.81;
 
@@ -387,6 +387,28 @@ fn flat_faces_that_meet_head_on_exchange_what_the_formula_says() {
         }
     }
     println!("head-on: {worst:.1e} m/s or rad/s off at most");
+}
+
+/// Energy that a body's turning gives to its line is none that grows, however hard the body is to turn.
+#[test]
+fn what_is_hard_to_turn_bounces_and_rubs_as_its_coefficients_say() {
+    for inertia in [1.0, 1e3, 1e6, 1e9] {
+        let mut world = world(0.0, 0.0);
+        let shape = surface(disc(0.5), 0.3, 1.0);
+        let wheel = BodyDef {
+            mass: Some(num("1")),
+            inertia: Some(Inertia::from_f64(inertia).expect("in range")),
+            angular_velocity: num("20"),
+            ..solid(0.0, 0.0, shape.clone())
+        };
+        let wheel = add(&mut world, wheel);
+        let ball = add(&mut world, moving(weighing(solid(1.2, 0.0, shape), 1.0), -5.0, 0.0));
+        run(&mut world, 6);
+        // 5 N s along the normal, 0.3 of that across: the rim goes at 10 m/s, and is not stopped by it.
+        close2(velocity(&world, wheel), (-5.0, -1.5), 1e-6);
+        close2(velocity(&world, ball), (0.0, 1.5), 1e-6);
+        close(omega(&world, wheel), 20.0 - 0.75 / inertia, 1e-6);
+    }
 }
 
 // Acceptance cases with a time.

@@ -6,15 +6,22 @@
 //! does) they fail.
 #![allow(clippy::arithmetic_side_effects, reason = "tests, not the engine")]
 
+#[path = "streams/play/draws.rs"]
+#[allow(dead_code, reason = "not every quantity is drawn here")]
+mod draws;
+#[path = "common/trials.rs"]
+mod trials;
+
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use tamias2d::num::{cross, cross_wide, div, dot, hypot, mul, mul_add, mul_div, round_shift, sin_cos, sqrt};
 use tamias2d::replay::{Player, Recorder};
 use tamias2d::{
-    Acceleration, Angle, AngularVelocity, BodyDef, BodyKind, ColliderDef, Commands, Friction, Impulse, Length,
-    Restitution, Shape, Vec2, Velocity, World, WorldDef,
+    Acceleration, Angle, AngularVelocity, BodyDef, BodyKind, ColliderDef, Commands, Friction, Impulse, Inertia, Length,
+    Mass, Restitution, Shape, Vec2, Velocity, World, WorldDef,
 };
+use trials::Kind;
 
 /// Runs a script of `tests/law` with arguments and input; it must end with status 0. What it says; none without Python.
 fn python(script: &str, arguments: &[PathBuf], input: &str) -> Option<String> {
@@ -304,6 +311,45 @@ fn lean(seed: u64) -> Vec<u8> {
     recorder.finish().expect("memory")
 }
 
+/// A recorded world of a wheel that is hard to turn, and of what bounces off it: what w weighs of that wheel is far more than
+/// 64 bits hold.
+fn wheel(seed: u64) -> Vec<u8> {
+    let draws = &mut Draws(seed);
+    let rate = rate(draws);
+    let mut recorder = world(draws, rate, 0);
+    let collider = |shape: Shape| ColliderDef {
+        restitution: Restitution::from_bits(1 << 48),
+        friction: Friction::from_bits(thousandths(950, 48)),
+        ..ColliderDef::new(shape)
+    };
+    let inertia = 1i128 << draws.between(70, 110);
+    let side = length(draws.between(800, 1600));
+    let wheel = BodyDef {
+        mass: Some(Mass::from_bits(1 << 64)),
+        inertia: Some(Inertia::from_bits(inertia)),
+        angular_velocity: AngularVelocity::from_bits(thousandths(draws.between(-40_000, 40_000), 48)),
+        colliders: vec![collider(Shape::Box { width: side, height: length(600) })],
+        ..BodyDef::default()
+    };
+    recorder.create_body(&wheel).expect("a wheel");
+    for side in [-1, 1] {
+        let speed = [-side * draws.between(2000, 9000), draws.between(-1000, 1000)];
+        let speed = speed.map(|v| Velocity::from_bits(thousandths(v, 48)));
+        let shape = shape(draws);
+        let ball = BodyDef {
+            position: Vec2::new(length(side * draws.between(2600, 4000)), length(draws.between(-400, 400))),
+            velocity: Vec2::new(speed[0], speed[1]),
+            colliders: vec![collider(shape)],
+            ..BodyDef::default()
+        };
+        recorder.create_body(&ball).expect("a ball");
+    }
+    for _ in 0..60 {
+        recorder.step();
+    }
+    recorder.finish().expect("memory")
+}
+
 /// Plays worlds made of these seeds here and there. What Python says.
 fn compare(name: &str, seeds: std::ops::RangeInclusive<u64>, record: impl Fn(u64) -> Vec<u8>) -> Option<String> {
     let folder = std::env::temp_dir().join(format!("tamias2d-law-{name}-{}", std::process::id()));
@@ -337,5 +383,18 @@ fn what_is_squeezed_plays_alike_in_python() {
 fn what_trembles_plays_alike_in_python() {
     if let Some(said) = compare("lean", 1..=8, lean) {
         assert!(said.contains(" stayed in spite of a tremor"), "not reached: {said}");
+    }
+}
+
+#[test]
+fn what_is_hard_to_turn_plays_alike_in_python() {
+    compare("wheel", 1..=8, wheel);
+}
+
+/// The worlds of `pins.rs`, among them what is hostile.
+#[test]
+fn trials_play_alike_in_python() {
+    for (kind, seeds) in [(Kind::Cradle, 0..=7), (Kind::Row, 2..=3), (Kind::Crowd, 1..=3), (Kind::Wild, 0..=13)] {
+        compare(kind.name(), seeds, |seed| trials::record(kind, seed));
     }
 }

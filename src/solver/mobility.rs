@@ -103,7 +103,7 @@ impl Mobility {
 
     /// What its speeds weigh: w² as much as ω²·I/(m·σ²) = w²/τ.
     pub(crate) fn weight(&self) -> Weight {
-        let turning = if self.tau_fine > 0 { div(1 << 96, self.tau_fine.into()) as i64 } else { 0 };
+        let turning = if self.tau_fine > 0 { div(1 << 96, self.tau_fine.into()) } else { 0 };
         Weight { mantissa: self.mantissa, exponent: self.exponent, turning }
     }
 

@@ -309,13 +309,14 @@ pub(crate) fn solve(
 pub(crate) struct Weight {
     pub(crate) mantissa: i64,
     pub(crate) exponent: u32,
-    pub(crate) turning: i64,
+    pub(crate) turning: i128,
 }
 
 /// Whether impulses add to the energy of the bodies, beyond what rounding does. One that is moved by nothing and moves
 /// itself may do work.
 ///
-/// Range: squares of speeds are Q48 and below 2⁷⁶, times a mantissa of 34 bits.
+/// Range: squares of speeds are Q48 and below 2⁷⁶, times a mantissa of 34 bits. A body that is hard to turn has a `turning`
+/// of up to 96 bits, but then w changes by as much less: by p·τ·α·j, so that both are below 2¹²⁷ together.
 fn gains(weights: &[Weight], before: &[Speed], after: &[Speed]) -> bool {
     let top = weights.iter().map(|weight| weight.exponent).max().unwrap_or(0);
     let mut gain = 0i128;
@@ -328,7 +329,7 @@ fn gains(weights: &[Weight], before: &[Speed], after: &[Speed]) -> bool {
             let rounding = b.saturating_abs().saturating_add(a.saturating_abs()) >> 38;
             (a.saturating_sub(b).saturating_mul(a.saturating_add(b)) >> 48).saturating_sub(rounding).saturating_sub(1)
         };
-        let turning = grown(2).saturating_mul(weight.turning.into()) >> 48;
+        let turning = grown(2).saturating_mul(weight.turning) >> 48;
         let sum = grown(0).saturating_add(grown(1)).saturating_add(turning);
         let part = sum.saturating_mul(weight.mantissa.into());
         gain = gain.saturating_add(part >> top.saturating_sub(weight.exponent).min(120));

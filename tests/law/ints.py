@@ -1,5 +1,6 @@
 """The number kernels: rounding to nearest with ties away from zero, and saturation. Plain integers."""
 
+from functools import reduce
 from math import isqrt
 
 I64, I128 = (1 << 63) - 1, (1 << 127) - 1
@@ -15,6 +16,20 @@ def clamp(value, low, high):
 def sat64(value):
     """Limited to the symmetric range of 64 bits."""
     return clamp(value, -I64, I64)
+
+
+def add(a, b):
+    """A sum of two numbers of 64 bits, limited to these."""
+    return clamp(a + b, -I64 - 1, I64)
+
+
+def sub(a, b):
+    return clamp(a - b, -I64 - 1, I64)
+
+
+def total(values):
+    """Of many, which are added one by one."""
+    return reduce(add, values, 0)
 
 
 def sat128(value):

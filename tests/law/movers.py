@@ -3,7 +3,7 @@
 from types import SimpleNamespace as Row
 
 import squeeze
-from ints import clamp, div, mul, round_shift, sat64
+from ints import clamp, div, mul, round_shift, sat64, sub
 from motion import FAR, POSITION, TURNS, turn_by
 from ratios import SPEED_MAX
 from rows import HELD
@@ -218,5 +218,5 @@ class Movers:
                 faults.append((slot, TURNS))
             for axis, column in enumerate((state.vx, state.vy)):
                 column[slot] = sat64(begin.v[axis] + (mover.v[axis] - mover.start[axis] << k))
-            spun = mover.mobility.over_sigma(mover.v[2] - mover.start[2], 48 - k, 48)
+            spun = mover.mobility.over_sigma(sub(mover.v[2], mover.start[2]), 48 - k, 48)
             state.omega[slot] = sat64(begin.omega + spun)

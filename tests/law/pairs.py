@@ -4,7 +4,7 @@ from types import SimpleNamespace as Row
 
 import narrow
 import sleep
-from ints import cross, dot, mul, sqrt
+from ints import add, cross, dot, mul, sat64, sqrt, sub, total
 from ratios import weight
 from shapes import placed
 
@@ -46,7 +46,7 @@ def swept(at, v, gain, low, high, scales):
     box = [[0, 0], [0, 0]]
     for axis in (0, 1):
         ahead = half(way(v[axis], scales))
-        whole = way(v[axis] + half(gain[axis]), scales)
+        whole = way(sat64(v[axis] + half(gain[axis])), scales)
         box[0][axis] = at[axis] + low[axis] + min(ahead, whole, 0)
         box[1][axis] = at[axis] + high[axis] + max(ahead, whole, 0)
     return box
@@ -154,12 +154,12 @@ def meet(world, colliders, bodies, placed, past, scales):
     d = narrow.sub(b.x, a.x)
     if any(world.state.colliders.slots[slot].value.sensor for slot in colliders):
         return narrow.manifold([0, 0], []) if narrow.overlap(*placed, d) else None
-    v = narrow.sub(a.v, b.v)
+    v = [sub(a.v[axis], b.v[axis]) for axis in (0, 1)]
     reach = [world.outline(slot).reach for slot in colliders]
-    fastest = abs(v[0]) + abs(v[1]) + rim_speed(a.omega, reach[0]) + rim_speed(b.omega, reach[1])
+    fastest = total([sat64(abs(v[0])), sat64(abs(v[1])), rim_speed(a.omega, reach[0]), rim_speed(b.omega, reach[1])])
     gain = [world.drive.gain(body) for body in bodies]
-    pressed = sum(abs(gain[0][axis] - gain[1][axis]) for axis in (0, 1)) // 2
-    ahead = way(fastest + pressed, scales)
+    pressed = total(sat64(abs(gain[0][axis] - gain[1][axis])) for axis in (0, 1)) // 2
+    ahead = way(add(fastest, pressed), scales)
     manifold = narrow.near(*placed, d, scales.base + ahead)
     if manifold is None:
         return None
@@ -186,20 +186,22 @@ def meet(world, colliders, bodies, placed, past, scales):
 def strikes(world, pair, past, scales, among):
     """Whether a near pair comes together so fast that it strikes, or parts so fast that it needs no row."""
     a, b = (past[body] for body in pair.bodies)
-    n, v, between = pair.manifold.normal, narrow.sub(a.v, b.v), narrow.sub(b.x, a.x)
+    n, v, between = pair.manifold.normal, [sub(p, q) for p, q in zip(a.v, b.v)], narrow.sub(b.x, a.x)
     gain = [world.drive.gain(body) for body in pair.bodies]
     press = [dot(each, n, 30) for each in gain]
     closest = min(point.separation for point in pair.manifold.points)
     slowest = min(
-        dot(v, n, 30) + mul(a.omega, cross(point.arm, n, 30), 32)
-        - mul(b.omega, cross(narrow.sub(point.arm, between), n, 30), 32)
+        sub(
+            add(dot(v, n, 30), mul(a.omega, cross(point.arm, n, 30), 32)),
+            mul(b.omega, cross(narrow.sub(point.arm, between), n, 30), 32),
+        )
         for point in pair.manifold.points
     )
     heaviest = max(weight(gain[0]), weight(gain[1]))
     threshold = scales.threshold(pair.restitution, heaviest, among)
     gap, pressed = closest > scales.touching, max(press[1] - press[0], 0)
-    fast = max(-slowest, 0) + (pressed if gap else 0) > threshold
-    parts = slowest - pressed > scales.parting(pair.restitution, gap, threshold, heaviest)
+    fast = add(max(-slowest, 0), pressed if gap else 0) > threshold
+    parts = sub(slowest, pressed) > scales.parting(pair.restitution, gap, threshold, heaviest)
     return (fast or parts) and closest > -scales.slack
 
 
@@ -220,7 +222,8 @@ def turns(world, pair, past, scales):
     if sum(omega) < TURNING:
         return False
     mobility = [world.mobilities[body] for body in pair.bodies]
-    speed = sum(abs(a.v[axis] - b.v[axis]) + mul(omega[axis], mobility[axis].reach, 32) for axis in (0, 1))
+    line = [sat64(abs(a.v[axis] - b.v[axis])) for axis in (0, 1)]
+    speed = total(line + [mul(omega[body], mobility[body].reach, 32) for body in (0, 1)])
     for body in (0, 1):
         turn, gone = (mul(rate, scales.tick, 79) for rate in (omega[body], speed))
         beside = min(mul(turn, gone, 33), mobility[body].reach << 1)

@@ -4,7 +4,7 @@ import direct
 import narrow
 import repose
 import squeeze
-from ints import cross, dot, mul, rotate, sin_cos
+from ints import add, cross, dot, mul, rotate, sat64, sin_cos, sub, total
 from motion import integrate
 from movers import Movers, state_of
 from pairs import ROUNDING, Pair, find, lasts, old, outcome, strikes, swings, turns, vote
@@ -196,10 +196,9 @@ def renew(world, pair, movers):
         states.append(state)
     there = [placed(world.outline(slot), state.angle) for slot, state in zip(pair.colliders, states)]
     between = narrow.sub(states[1].x, states[0].x)
-    speed = sum(
-        abs(states[0].v[at] - states[1].v[at]) + mul(abs(states[at].omega), world.mobilities[pair.bodies[at]].reach, 32)
-        for at in (0, 1)
-    )
+    line = [sat64(abs(states[0].v[axis] - states[1].v[axis])) for axis in (0, 1)]
+    rims = [mul(abs(state.omega), world.mobilities[slot].reach, 32) for state, slot in zip(states, pair.bodies)]
+    speed = total(line + rims)
     pair.met |= contact.spent()
     pair.manifold = narrow.collide(*there, between, scales.base + mul(speed, scales.line, 79))
     betweens = half_on(pair.manifold, there, states, between, scales)
@@ -224,7 +223,8 @@ def half_on(manifold, there, states, between, scales):
         for body in (0, 1):
             if body == edge:
                 own, other = states[body], states[1 ^ body]
-                slide = dot(other.v, t, 30) + mul(other.omega, cross(arms[1 ^ body], t, 30), 32) - dot(own.v, t, 30)
+                turning = mul(other.omega, cross(arms[1 ^ body], t, 30), 32)
+                slide = sub(add(dot(other.v, t, 30), turning), dot(own.v, t, 30))
                 gone = mul(slide, scales.line, 80)
                 moved.append([arms[body][axis] + mul(gone, t[axis], 30) for axis in (0, 1)])
                 continue

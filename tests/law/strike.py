@@ -3,7 +3,7 @@
 Velocities and impulses are Q48 over 2^k; an impulse λ is carried as λ·(1/m_a + 1/m_b), a velocity.
 """
 
-from ints import clamp, cross, div, dot, mul, sat64
+from ints import add, clamp, cross, div, dot, mul, sat64, sat128, sub
 
 LIMIT = 1 << 61
 ROUNDS = (32, 256)
@@ -25,16 +25,16 @@ class Line:
             if not mobility[body].fixed:
                 self.arm[body] = mobility[body].over_sigma(cross(r, along, 30), 32, 48)
             self.turn[body] = mul(mul(share[body], mobility[body].tau_fine, 48), self.arm[body], 48)
-        self.kappa = share[0] + share[1] + self.turned_by(self)
+        self.kappa = add(share[0] + share[1], self.turned_by(self))
         self.inverse = div(1 << 110, self.kappa)
         self.target = self.impulse = 0
 
     def speed(self, a, b):
-        turning = mul(self.arm[0], a[2], 48) - mul(self.arm[1], b[2], 48)
-        return dot((a[0] - b[0], a[1] - b[1]), self.along, 30) + turning
+        turning = sub(mul(self.arm[0], a[2], 48), mul(self.arm[1], b[2], 48))
+        return add(dot((sub(a[0], b[0]), sub(a[1], b[1])), self.along, 30), turning)
 
     def turned_by(self, other):
-        return mul(self.arm[0], other.turn[0], 48) + mul(self.arm[1], other.turn[1], 48)
+        return add(mul(self.arm[0], other.turn[0], 48), mul(self.arm[1], other.turn[1], 48))
 
 
 class Strike:
@@ -52,7 +52,7 @@ class Strike:
             # Held at the point and at the centre of one that moves.
             second = [0, 0] if mobility[0].moves() else between
             self.brace, self.count, self.rough = [line(n, second), line(t, second)], 1, 0
-        self.couple = share[0] + share[1] + self.points[0].turned_by(self.points[1])
+        self.couple = add(share[0] + share[1], self.points[0].turned_by(self.points[1]))
         self.determinant = None
         if self.count == 2:
             whole = self.points[0].kappa * self.points[1].kappa
@@ -90,10 +90,10 @@ class Strike:
             return
         for body, sign in ((0, 1), (1, -1)):
             v = speeds[self.bodies[body]]
-            line = mul(impulse * sign, self.share[body], 48)
+            line = mul(sub(0, impulse) if sign < 0 else impulse, self.share[body], 48)
             for axis in (0, 1):
                 v[axis] = bounded(v[axis] + mul(line, row.along[axis], 30))
-            v[2] = bounded(v[2] + mul(impulse * sign, row.turn[body], 48))
+            v[2] = bounded(v[2] + mul(sub(0, impulse) if sign < 0 else impulse, row.turn[body], 48))
 
     def sweep(self, speeds, enough):
         """Friction and both points until none changes by more than `enough`; the greatest change of an impulse."""
@@ -109,14 +109,14 @@ class Strike:
                 slide = self.slide(slip, across, done < PLAIN)
                 if done > 0 and abs(slide) <= enough:
                     break
-                self.friction.impulse += slide
-                slip += mul(self.friction.kappa, slide, 48)
-                apart = [apart[at] + mul(across[at], slide, 48) for at in (0, 1)]
+                self.friction.impulse = add(self.friction.impulse, slide)
+                slip = add(slip, mul(self.friction.kappa, slide, 48))
+                apart = [add(apart[at], mul(across[at], slide, 48)) for at in (0, 1)]
                 for at, change in enumerate(self.press(apart)):
-                    slip += mul(across[at], change, 48)
+                    slip = add(slip, mul(across[at], change, 48))
         else:
             self.press(apart)
-        changes = [row.impulse - before for row, before in zip(rows, start)]
+        changes = [sub(row.impulse, before) for row, before in zip(rows, start)]
         for row, change in zip(rows, changes):
             self.give(row, change, speeds)
         return max(abs(change) for change in changes)
@@ -126,25 +126,25 @@ class Strike:
         changed = 0
         for row in [*self.brace, self.friction, self.points[0]]:
             change = -mul(row.speed(*(speeds[at] for at in self.bodies)), row.inverse, 62)
-            row.impulse += change
+            row.impulse = add(row.impulse, change)
             self.give(row, change, speeds)
             changed = max(changed, abs(change))
         return changed
 
     def slide(self, slip, across, foresight):
         """By how much friction is to change, so that nothing slips, or within what it may be of the load."""
-        now, load = self.friction.impulse, self.points[0].impulse + self.points[1].impulse
+        now, load = self.friction.impulse, add(self.points[0].impulse, self.points[1].impulse)
         slope = self.slope(across) if foresight and load > 0 else None
         inverse, yields = slope or (self.friction.inverse, 0)
         change = -mul(slip, inverse, 62)
-        then = now + change
-        if abs(then) <= mul(max(load - mul(yields, change, 48), 0), self.rough, 48):
+        then = add(now, change)
+        if abs(then) <= mul(max(sub(load, mul(yields, change, 48)), 0), self.rough, 48):
             return change
         # It slides: f = ±μ·(N − y·(f − f₀)), for f.
         rough = -self.rough if then < 0 else self.rough
-        by = mul(rough, yields, 48) + (1 << 48)
-        bound = div(rough * (load + mul(yields, now, 48)), by) if by > 1 << 45 else mul(rough, load, 48)
-        return (bound if (bound < 0) == (rough < 0) else 0) - now
+        by = add(mul(rough, yields, 48), 1 << 48)
+        bound = sat64(div(rough * add(load, mul(yields, now, 48)), by)) if by > 1 << 45 else mul(rough, load, 48)
+        return sub(bound if (bound < 0) == (rough < 0) else 0, now)
 
     def slope(self, across):
         """How the points that press would answer friction: 1/(κ − what they take of it), and what of load yields."""
@@ -162,23 +162,23 @@ class Strike:
             reply = [0, mul(across[1], q.inverse, 62)]
         else:
             return None
-        left = self.friction.kappa - (mul(across[0], reply[0], 48) + mul(across[1], reply[1], 48))
-        return (div(1 << 110, left), reply[0] + reply[1]) if left > self.friction.kappa >> 6 else None
+        left = sub(self.friction.kappa, add(mul(across[0], reply[0], 48), mul(across[1], reply[1], 48)))
+        return (sat64(div(1 << 110, left)), add(reply[0], reply[1])) if left > self.friction.kappa >> 6 else None
 
     def press(self, apart):
         """Gives the points what they want; their speeds `apart` follow."""
         change = self.answer(apart)
         for at, other in ((0, 1), (1, 0)):
             row = self.points[at]
-            row.impulse += change[at]
-            apart[at] += mul(row.kappa, change[at], 48) + mul(self.couple, change[other], 48)
+            row.impulse = add(row.impulse, change[at])
+            apart[at] = add(add(apart[at], mul(row.kappa, change[at], 48)), mul(self.couple, change[other], 48))
         return change
 
     def answer(self, apart):
         """The changes of the points' impulses that give them their target speeds, none of them pulling."""
         rows = self.points
-        want = [rows[at].target - apart[at] for at in (0, 1)]
-        least = [-row.impulse for row in rows]
+        want = [sub(rows[at].target, apart[at]) for at in (0, 1)]
+        least = [sub(0, row.impulse) for row in rows]
         alone = lambda at, wanted: max(mul(wanted, rows[at].inverse, 62), least[at])
         if self.determinant is None:
             deeper = int(self.count > 1 and want[1] > want[0])
@@ -192,9 +192,9 @@ class Strike:
         for free in (0, 1):
             held = 1 ^ free
             change = list(least)
-            change[free] = alone(free, want[free] - mul(self.couple, least[held], 48))
-            speed = mul(rows[held].kappa, least[held], 48) + mul(self.couple, change[free], 48)
-            found.append((change, speed - want[held]))
+            change[free] = alone(free, sub(want[free], mul(self.couple, least[held], 48)))
+            speed = add(mul(rows[held].kappa, least[held], 48), mul(self.couple, change[free], 48))
+            found.append((change, sub(speed, want[held])))
         return found[0][0] if found[0][1] >= found[1][1] else found[1][0]
 
 
@@ -212,7 +212,7 @@ def gains(weights, before, after):
         if mantissa == 0 and any(b):
             return False
         grown = [((y - x) * (y + x) >> 48) - (abs(x) + abs(y) >> 38) - 1 for x, y in zip(b, a)]
-        total = grown[0] + grown[1] + (grown[2] * turning >> 48)
+        total = grown[0] + grown[1] + (sat128(grown[2] * turning) >> 48)
         gain += total * mantissa >> min(top - exponent, 120)
     return gain > 0
 
@@ -228,7 +228,7 @@ def solve(strikes, restitutions, weights, speeds):
     elastic = any(restitution >= ONE for restitution in restitutions)
     approaches = [strike.approach(speeds) for strike in strikes]
     fastest = approaches.index(min(approaches)) if strikes else 0
-    enough = 1 if elastic else max(-min(approaches, default=0) >> 26, 1)
+    enough = 1 if elastic else max(sub(0, min(approaches, default=0)) >> 26, 1)
     for attempt in range(4):
         alone = attempt == 1 or len(strikes) < 2
         if attempt == 1 and len(strikes) < 2:

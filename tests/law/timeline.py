@@ -3,7 +3,7 @@
 from heapq import heappop
 
 import narrow
-from ints import clamp, mul, round_shift, sat64
+from ints import clamp, mul, round_shift, sat64, sub
 from motion import FAR, POSITION
 from movers import CONTACT_SPEED
 from pairs import half
@@ -120,7 +120,7 @@ class Timeline(Ways):
             strike = self.contact(pair, time)
             if strike is None:
                 continue
-            approach = -strike.approach(self.speeds)
+            approach = sub(0, strike.approach(self.speeds))
             if approach <= half(pair.least):
                 continue
             a, b = (self.flights[place] for place in pair.flights)
@@ -199,7 +199,7 @@ class Timeline(Ways):
     def change(self, at, place, before, time):
         """Gives a body the speed that its impacts left it."""
         flight, mobility, overspent, k = self.flights[place], self.mobility(place), self.overspent(), self.scales.shift
-        change = [self.speeds[at][axis] - before[axis] for axis in range(3)]
+        change = [sub(self.speeds[at][axis], before[axis]) for axis in range(3)]
         if not mobility.moves() or not any(change):
             return
         flight.changed = flight.aside = True
@@ -232,7 +232,7 @@ class Timeline(Ways):
         before = solve(strikes, [0] * len(strikes), weights, speeds)
         for place, then, now in zip(self.locals, before, speeds):
             gain, mobility = self.flights[place].gain, self.mobility(place)
-            change = [now[axis] - then[axis] for axis in range(3)]
+            change = [sub(now[axis], then[axis]) for axis in range(3)]
             gain = [sat64(gain[axis] + sat64(change[axis] << k)) for axis in (0, 1)] + [gain[2]]
             if mobility.moves():
                 gain[2] = sat64(gain[2] + mobility.over_sigma(change[2], 48 - k, 48))

@@ -4,7 +4,7 @@ from heapq import heappush
 from types import SimpleNamespace as Row
 
 import narrow
-from ints import mul, sat64
+from ints import add, mul, sat64, sub
 from meeting import fastest, first_touch
 from motion import turn_by
 from pairs import free_box, half, may_strike, overlaps, still_box, surface
@@ -28,7 +28,7 @@ class Flight:
         self.around, self.looked = None, 0
 
     def way(self, axis, gained, after):
-        return mul(mul(self.state.v[axis] + half(gained), self.scales.tick, 71), after, 40)
+        return mul(mul(add(self.state.v[axis], half(gained)), self.scales.tick, 71), after, 40)
 
     def at(self, time):
         """Where it is at a time that is not before its own."""
@@ -36,7 +36,7 @@ class Flight:
         if after == 0:
             return Row(x=list(s.x), angle=s.angle, v=list(s.v), omega=s.omega)
         gained = [mul(gain, after, 32) for gain in self.gain]
-        turned = mul(mul(s.omega + half(gained[2]), self.scales.tick_turn, 63), after, 32)
+        turned = mul(mul(add(s.omega, half(gained[2])), self.scales.tick_turn, 63), after, 32)
         return Row(
             x=[s.x[axis] + self.way(axis, gained[axis], after) for axis in (0, 1)], angle=turn_by(s.angle, turned)[0],
             v=[sat64(s.v[axis] + gained[axis]) for axis in (0, 1)], omega=sat64(s.omega + gained[2]),
@@ -82,7 +82,7 @@ class Ways:
         """The place of a body's flight, which begins as its free motion."""
         if slot not in self.by_slot:
             s, past = self.world.state, self.movers.past[slot]
-            gain = [s.vx[slot] - past.v[0], s.vy[slot] - past.v[1], s.omega[slot] - past.omega]
+            gain = [sub(s.vx[slot], past.v[0]), sub(s.vy[slot], past.v[1]), sub(s.omega[slot], past.omega)]
             copy = Row(x=list(past.x), angle=past.angle, v=list(past.v), omega=past.omega)
             self.by_slot[slot] = len(self.flights)
             self.flights.append(Flight(slot, copy, gain, self.movers.place_of(slot), self.scales))
@@ -155,8 +155,8 @@ class Ways:
         tick = lambda v: mul(v, self.scales.tick, 71)
         p, q = a.at(time), b.at(time)
         return Row(
-            d=narrow.sub(q.x, p.x), v=[tick(c) for c in narrow.sub(q.v, p.v)],
-            a=[tick(c) for c in narrow.sub(b.gain, a.gain)], angle=[p.angle, q.angle],
+            d=narrow.sub(q.x, p.x), v=[tick(sub(c, d)) for c, d in zip(q.v, p.v)],
+            a=[tick(sub(c, d)) for c, d in zip(b.gain[:2], a.gain[:2])], angle=[p.angle, q.angle],
             omega=[tick(p.omega), tick(q.omega)], alpha=[tick(a.gain[2]), tick(b.gain[2])],
         )
 
@@ -202,7 +202,7 @@ class Ways:
             state = self.movers.past[slot] if known is None else self.flights[known].state
             v.append(state.v)
             total += mul(abs(state.omega), self.world.mobilities[slot].reach, 32)
-        return total + abs(v[0][0] - v[1][0]) + abs(v[0][1] - v[1][1])
+        return sat64(total + abs(v[0][0] - v[1][0]) + abs(v[0][1] - v[1][1]))
 
     def look_again(self, place, time):
         """Looks again when the pairs of a body that was struck meet."""

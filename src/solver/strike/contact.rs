@@ -1,7 +1,7 @@
 //! One contact by itself: what its rows do to each other until they agree, before the bodies get it.
 
 use super::{Row, Speed, Strike, give, over, product};
-use crate::num::{div, mul};
+use crate::num::{clamp_i64, div, mul};
 
 /// How often friction and the points of a contact are gone through at most, and from when on without foresight: that it
 /// knows what the points will answer brings most to an end in two or three.
@@ -87,7 +87,7 @@ impl Strike {
         let rough = if then < 0 { self.rough.saturating_neg() } else { self.rough };
         let by = mul(rough, yields, 48).saturating_add(1 << 48);
         let bound = if by > 1 << 45 {
-            div(product(rough, load.saturating_add(mul(yields, now, 48))), by.into()) as i64
+            clamp_i64(div(product(rough, load.saturating_add(mul(yields, now, 48))), by.into()))
         } else {
             mul(rough, load, 48)
         };
@@ -113,7 +113,7 @@ impl Strike {
         };
         let taken = mul(across[0], reply[0], 48).saturating_add(mul(across[1], reply[1], 48));
         let left = self.friction.kappa.saturating_sub(taken);
-        let inverse = (left > self.friction.kappa >> 6).then(|| div(1 << 110, left.into()) as i64)?;
+        let inverse = (left > self.friction.kappa >> 6).then(|| clamp_i64(div(1 << 110, left.into())))?;
         Some(Slope { inverse, yields: reply[0].saturating_add(reply[1]) })
     }
 
