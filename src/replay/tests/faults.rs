@@ -249,6 +249,8 @@ fn results() -> Vec<Kind> {
         "rows" "separation[1]" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; flip(&mut w.solver.memory().0[b].separation[1][l], i, d) };
         "rows" "peak[0]" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; flip(&mut w.solver.memory().0[b].peak[0][l], i, d) };
         "rows" "couple[2]" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; flip(&mut w.solver.memory().0[b].couple[2][l], i, d) };
+        "rows" "pushes" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; bit(&mut w.solver.memory().0[b].pushes, l, i) };
+        "rows" "heavy" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; bit(&mut w.solver.memory().0[b].heavy, l, i) };
         "movers" "v[0]" PREPARED |w, i of w.solver.memory().1.lanes.len(), d| flip(&mut w.solver.memory().1.lanes[i].v[0], i, d);
         "movers" "w" PREPARED |w, i of w.solver.memory().1.lanes.len(), d| flip(&mut w.solver.memory().1.lanes[i].w, i, d);
         "movers" "d[1]" PREPARED |w, i of w.solver.memory().1.lanes.len(), d| flip(&mut w.solver.memory().1.lanes[i].d[1], i, d);
@@ -263,6 +265,13 @@ fn part(row: &mut [u64; 6], word: usize, from: u32, bits: u32, at: usize, dice: 
     let before = of(row);
     row[word] ^= 1 << (from as usize + dice.below(bits as usize));
     Some((at, before, of(row)))
+}
+
+/// A lane's bit of a block.
+fn bit(byte: &mut u8, lane: usize, at: usize) -> Done {
+    let before = u128::from(*byte >> lane & 1);
+    *byte ^= 1 << lane;
+    Some((at, before, before ^ 1))
 }
 
 /// The seat of a pair's row, and its place in the table of rows.
