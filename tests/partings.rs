@@ -135,7 +135,7 @@ fn parts_that_were_recorded_say_where_to_look() {
     let both = |machine: Machine| Machine { parts: true, ..machine };
     let out = parted("parts", [both(FAULTY), both(SOUND)]);
     assert!(out.contains("\n  at tick 30, the next at which parts were recorded, motion differs\n"), "{out}");
-    assert!(out.contains("\n  this build's parts after the tick: clock "), "{out}");
+    assert!(out.contains("\n  this build's parts after the tick: configuration "), "{out}");
     // Of one side alone they say nothing.
     let out = parted("one_side", [both(FAULTY), SOUND]);
     assert!(out.contains("the parts of the state were not recorded"), "{out}");
@@ -152,10 +152,10 @@ fn evidence_names_the_field() {
     // Of the faulty side alone: this build stands in for the other one.
     let out = parted("evidence", [SOUND, of(FAULTY)]);
     assert!(out.contains("A is what this build computes, which stands in for it\n"), "{out}");
-    assert!(out.contains("B holds evidence taken as it happened, by tamias2d "), "{out}");
+    assert!(out.contains("B holds evidence computed again, by tamias2d "), "{out}");
     assert!(out.contains(field) && !out.contains("next, "), "{out}");
     let out = parted("evidence_of_both", [of(SOUND), of(FAULTY)]);
-    assert!(out.contains("A holds evidence taken as it happened") && out.contains(field), "{out}");
+    assert!(out.contains("A holds evidence computed again") && out.contains(field), "{out}");
     // Of the sound side alone it is no help: what the other one's memory held is known to nobody.
     let out = parted("evidence_of_the_sound", [of(SOUND), FAULTY]);
     assert!(out.contains("B holds no evidence of this tick, and this build computes something else"), "{out}");

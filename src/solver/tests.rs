@@ -223,3 +223,36 @@ fn a_box_that_lanes_have_no_numbers_for_rests_as_others_do() {
         assert!(sunk.abs() < (1 << 32) / 100, "it is {sunk} units down, {:?}", world.solver.kernel);
     }
 }
+
+/// Without gravity, two boxes 1 cm apart, one of which turns: its rows would not know of the corner that swings in, so it has
+/// none once its rim is faster than 1 m/s, and collides. Pressed together it has rows however it turns.
+#[test]
+fn what_turns_fast_across_a_gap_has_no_rows() {
+    let run = |omega: &str, gravity: &str| {
+        let gravity = Vec2::new(Acceleration::ZERO, gravity.parse().unwrap());
+        let mut world = World::new(&WorldDef { gravity, ..WorldDef::default() }).unwrap();
+        let side = |side: i64| Length::from_bits(side << 32);
+        let collider = |width| vec![ColliderDef::new(Shape::Box { width: side(width), height: side(1) })];
+        let at = |y: &str| Vec2::new(Length::ZERO, y.parse().unwrap());
+        let still = BodyDef { kind: BodyKind::Static, colliders: collider(9), ..BodyDef::default() };
+        world.create_body(&still).unwrap();
+        let angular_velocity = omega.parse().unwrap();
+        let turning = BodyDef { position: at("1.01"), angular_velocity, colliders: collider(1), ..BodyDef::default() };
+        world.create_body(&turning).unwrap();
+        world.step();
+        assert_eq!(world.touch.pairs.len(), 1, "they are near");
+        let has_row = world.touch.pairs[0].row != crate::contact::NEW;
+        let collides = (0..20).any(|_| {
+            world.step();
+            !world.collisions().is_empty()
+        });
+        (has_row, collides)
+    };
+    // Half a diagonal of 0.7071 m: 1 m/s at 1.4142 rad/s.
+    for sign in ["", "-"] {
+        assert_eq!(run(&format!("{sign}1.45"), "0"), (false, true));
+        assert_eq!(run(&format!("{sign}1.40"), "0"), (true, false));
+        assert_eq!(run(&format!("{sign}1.45"), "-0.1"), (true, false));
+    }
+    assert_eq!(run("0", "0"), (true, false));
+}
