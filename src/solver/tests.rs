@@ -224,11 +224,11 @@ fn a_box_that_lanes_have_no_numbers_for_rests_as_others_do() {
     }
 }
 
-/// Without gravity, two boxes 1 cm apart, one of which turns: its rows would not know of the corner that swings in, so it has
-/// none once its rim is faster than 1 m/s, and collides. Pressed together it has rows however it turns.
+/// Without gravity, two boxes 1 cm apart, one of which turns: rows would not know of the corner that swings in, so there are none
+/// once its rim is faster than 1 m/s. Under gravity there are, however it turns.
 #[test]
 fn what_turns_fast_across_a_gap_has_no_rows() {
-    let run = |omega: &str, gravity: &str| {
+    let has_row = |omega: &str, gravity: &str| {
         let gravity = Vec2::new(Acceleration::ZERO, gravity.parse().unwrap());
         let mut world = World::new(&WorldDef { gravity, ..WorldDef::default() }).unwrap();
         let side = |side: i64| Length::from_bits(side << 32);
@@ -241,18 +241,13 @@ fn what_turns_fast_across_a_gap_has_no_rows() {
         world.create_body(&turning).unwrap();
         world.step();
         assert_eq!(world.touch.pairs.len(), 1, "they are near");
-        let has_row = world.touch.pairs[0].row != crate::contact::NEW;
-        let collides = (0..20).any(|_| {
-            world.step();
-            !world.collisions().is_empty()
-        });
-        (has_row, collides)
+        world.touch.pairs[0].row != crate::contact::NEW
     };
     // Half a diagonal of 0.7071 m: 1 m/s at 1.4142 rad/s.
     for sign in ["", "-"] {
-        assert_eq!(run(&format!("{sign}1.45"), "0"), (false, true));
-        assert_eq!(run(&format!("{sign}1.40"), "0"), (true, false));
-        assert_eq!(run(&format!("{sign}1.45"), "-0.1"), (true, false));
+        assert!(!has_row(&format!("{sign}1.45"), "0"));
+        assert!(has_row(&format!("{sign}1.40"), "0"));
+        assert!(has_row(&format!("{sign}1.45"), "-0.1"));
     }
-    assert_eq!(run("0", "0"), (true, false));
+    assert!(has_row("0", "0"));
 }

@@ -249,12 +249,18 @@ fn results() -> Vec<Kind> {
         "rows" "separation[1]" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; flip(&mut w.solver.memory().0[b].separation[1][l], i, d) };
         "rows" "peak[0]" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; flip(&mut w.solver.memory().0[b].peak[0][l], i, d) };
         "rows" "couple[2]" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; flip(&mut w.solver.memory().0[b].couple[2][l], i, d) };
-        "rows" "pushes" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; bit(&mut w.solver.memory().0[b].pushes, l, i) };
-        "rows" "heavy" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; bit(&mut w.solver.memory().0[b].heavy, l, i) };
         "movers" "v[0]" PREPARED |w, i of w.solver.memory().1.lanes.len(), d| flip(&mut w.solver.memory().1.lanes[i].v[0], i, d);
         "movers" "w" PREPARED |w, i of w.solver.memory().1.lanes.len(), d| flip(&mut w.solver.memory().1.lanes[i].w, i, d);
         "movers" "d[1]" PREPARED |w, i of w.solver.memory().1.lanes.len(), d| flip(&mut w.solver.memory().1.lanes[i].d[1], i, d);
         "collisions" "order" PREPARED |w, i of w.solver.memory().2.len(), d| flip(&mut w.solver.memory().2[i].order, i, d);
+    }
+}
+
+/// What a block has a bit a lane of.
+fn bits_of_blocks() -> Vec<Kind> {
+    kinds! {
+        "rows" "pushes" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; bit(&mut w.solver.memory().0[b].pushes, l, i) };
+        "rows" "heavy" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; bit(&mut w.solver.memory().0[b].heavy, l, i) };
     }
 }
 
@@ -405,6 +411,20 @@ fn a_fault_between_stages_is_named_exactly() {
         assert!(*tried >= 2, "{} {} was hit {tried} times", kind.table, kind.field);
     }
     println!("{} kinds of fields, {} faults", kinds.len(), tried.iter().sum::<u32>());
+}
+
+/// A bit of a block is that of one contact.
+#[test]
+fn a_fault_in_a_bit_of_a_block_is_that_of_its_contact() {
+    let (mut dice, mut world) = (Dice(3), world_of_everything());
+    (0..60).for_each(|_| world.step());
+    let clean = Evidence::of_step(&mut world.clone());
+    for kind in bits_of_blocks() {
+        let (faulty, done) = evidence_with(&world, When::End(Stage::Prepare), |world| (kind.flip)(world, &mut dice));
+        let divergence = clean.first_difference(&faulty).expect("evidence").expect("it differs");
+        assert_eq!((divergence.stage, divergence.findings.len()), (Stage::Prepare, 1), "{divergence:?}");
+        check(&world, &kind, done.expect("there are rows"), &divergence);
+    }
 }
 
 /// Before a stage reads it, and after everybody has looked: what follows from it differs as well, and the fault stands first.
