@@ -95,4 +95,8 @@ fn boxes_turns_and_vectors() {
     assert_eq!(quarter.rotate(at(1.0, 2.0)), at(-2.0, 1.0));
     assert_eq!(quarter.unrotate(at(-2.0, 1.0)), at(1.0, 2.0));
     assert_eq!(Vec2::to_string(&at(1.5, -0.25)), "(1.5, -0.25)");
+    // For drawing.
+    assert_eq!((at(1.5, -0.25).to_f64(), quarter.to_f64()), ((1.5, -0.25), (0.0, 1.0)));
+    let (cos, sin) = Rot::new(Angle::from_bits((1 << 48) / 12)).to_f64();
+    assert!((cos - 0.75f64.sqrt()).abs() < 1e-9 && (sin - 0.5).abs() < 1e-9, "{cos} {sin}");
 }
