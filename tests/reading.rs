@@ -42,9 +42,9 @@ fn bodies_and_colliders_have_what_they_were_given() {
     assert_eq!((sensor.filter(), sensor.is_sensor()), (filter, true));
     assert_eq!((sensor.restitution(), sensor.friction()), (collider.restitution, collider.friction));
     assert_eq!((solid.filter(), solid.is_sensor()), (Filter::default(), false));
-    // Its definition makes the same body again; inertia was derived.
+    // Its definition makes the same body again; inertia and centre were derived.
     let again = body.def();
-    def.inertia = again.inertia;
+    (def.inertia, def.center) = (again.inertia, again.center);
     assert_eq!(again, def);
     world.destroy_body(first).expect("accepted");
     assert_eq!((world.body_count(), world.bodies().count(), world.body(first).is_none()), (1, 1, true));
@@ -70,12 +70,15 @@ fn events_and_collisions_have_ids_and_words() {
     let mut world = landing();
     world.step();
     let told: Vec<String> = world.events().iter().map(|event| event.to_string()).collect();
-    assert_eq!(told, ["contact_begin of 0v0 and 1v0", "contact_begin of 0v0 and 2v0"]);
+    assert_eq!(
+        told,
+        ["contact_begin of collider 0v0 and collider 1v0", "contact_begin of collider 0v0 and collider 2v0"]
+    );
     let event = &world.events()[0];
     assert_eq!((event.id().kind, event.id().ordinal, event.id().tick), (EventKind::ContactBegin, 0, 0));
-    assert_eq!(event.id().to_string(), "contact_begin 0 of 0v0 and 1v0 in tick 0");
+    assert_eq!(event.id().to_string(), "contact_begin 0 of collider 0v0 and collider 1v0 in tick 0");
     let ids: Vec<_> = world.collisions().iter().map(|collision| collision.id()).collect();
-    assert_eq!(ids[0].to_string(), "collision 0 of 0v0 and 2v0 in tick 0");
+    assert_eq!(ids[0].to_string(), "collision 0 of collider 0v0 and collider 2v0 in tick 0");
     // No two are called the same.
     let mut different = ids.clone();
     different.dedup();
