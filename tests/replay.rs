@@ -2,8 +2,11 @@
 #![allow(clippy::disallowed_types, clippy::arithmetic_side_effects, reason = "tests, not the engine")]
 
 mod common;
+#[path = "common/forge.rs"]
+mod forge;
 
 use common::{Storm, acc, at, disc, measure, newton_seconds, newtons, num, run, vel, world};
+use forge::Forge;
 use proptest::prelude::{ProptestConfig, any, prop_assert_eq, proptest};
 use std::cell::RefCell;
 use std::io::{self, Write};
@@ -494,72 +497,6 @@ fn bytes_after_the_end_are_refused() {
     let (mut twice, again) = (short().0, short().0);
     twice.extend(again);
     assert!(matches!(error(&twice), ReplayError::Trailing { offset } if offset == length));
-}
-
-/// A replay written by hand, from the description of the format alone.
-struct Forge {
-    bytes: Vec<u8>,
-    chain: u64,
-}
-
-impl Forge {
-    fn new(tick_rate: u32) -> Forge {
-        Forge::of(REPLAY_VERSION, LAW, tick_rate, 0)
-    }
-
-    fn of(version: u32, law: u32, tick_rate: u32, zero: u32) -> Forge {
-        let mut bytes = b"TAMIAS-R".to_vec();
-        for value in [version, law, tick_rate, zero] {
-            bytes.extend(value.to_le_bytes());
-        }
-        let chain = XxHash3_64::oneshot(&bytes);
-        bytes.extend(chain.to_le_bytes());
-        Forge { bytes, chain }
-    }
-
-    fn chained(mut self, record: &[u8]) -> Forge {
-        self.chain = XxHash3_64::oneshot_with_seed(self.chain, record);
-        self.bytes.extend(record);
-        self.bytes.extend((self.chain as u32).to_le_bytes());
-        self
-    }
-
-    fn record(self, tag: u8, payload: &[u8]) -> Forge {
-        let mut record = vec![tag];
-        record.extend((payload.len() as u32).to_le_bytes());
-        record.extend(payload);
-        self.chained(&record)
-    }
-
-    fn world(self, world: &World) -> Forge {
-        self.record(0x01, &world.save())
-    }
-
-    fn idle(self, hash: u64) -> Forge {
-        let mut forge = self;
-        let mut record = vec![0x02];
-        record.extend(hash.to_le_bytes());
-        forge.chain = XxHash3_64::oneshot_with_seed(forge.chain, &record);
-        forge.bytes.extend(record);
-        forge
-    }
-
-    /// A tick (0x03) or a tail (0x04) with encoded commands.
-    fn with_commands(self, tag: u8, hash: u64, commands: &[u8]) -> Forge {
-        let mut payload = hash.to_le_bytes().to_vec();
-        payload.extend(commands);
-        self.record(tag, &payload)
-    }
-
-    fn end(mut self, ticks: u64) -> Vec<u8> {
-        let mut record = vec![0x0f];
-        record.extend(ticks.to_le_bytes());
-        record.extend(0u64.to_le_bytes());
-        let chain = XxHash3_64::oneshot_with_seed(self.chain, &record);
-        self.bytes.extend(record);
-        self.bytes.extend(chain.to_le_bytes());
-        self.bytes
-    }
 }
 
 /// The command `SetUserData`: its tag 13, the body's index and generation, and the value.

@@ -151,7 +151,7 @@ impl Envelope {
 
 #[cfg(test)]
 mod tests {
-    use super::Envelope;
+    use super::{Envelope, FAR, FLOOR, ROWS};
 
     /// An arrow and a band, Q58.
     fn entry(i: usize, j: usize) -> i64 {
@@ -203,5 +203,56 @@ mod tests {
         envelope.push(0, 1 << 58);
         assert!(envelope.factor());
         assert!(!envelope.solve(&mut [1 << 60]));
+    }
+
+    /// Rows without anything left of the diagonal.
+    fn diagonal(rows: usize, pivot: i64) -> Envelope {
+        let mut envelope = Envelope::default();
+        (0..rows).for_each(|row| envelope.push(row, pivot));
+        envelope
+    }
+
+    #[test]
+    fn what_it_takes_ends_where_the_table_says() {
+        assert!(diagonal(ROWS, 1 << 58).factor());
+        assert!(!diagonal(ROWS + 1, 1 << 58).factor());
+        assert!(diagonal(1, FLOOR).factor());
+        assert!(!diagonal(1, FLOOR - 1).factor());
+        let one = |pivot: i64, right: i64| {
+            let mut envelope = diagonal(1, pivot);
+            assert!(envelope.factor());
+            let mut x = [right];
+            envelope.solve(&mut x).then_some(x[0])
+        };
+        let far = FAR as i64;
+        for sign in [1, -1] {
+            assert_eq!(one(1 << 58, sign * far), Some(sign * far));
+            assert_eq!(one(1 << 58, sign * (far + 1)), None);
+            // A solution beyond its range is refused as well: of a half, twice the right side.
+            assert_eq!(one(1 << 57, sign * (far >> 1)), Some(sign * far));
+            assert_eq!(one(1 << 57, sign * ((far >> 1) + 1)), None);
+        }
+        // What a row above adds counts: x0 = b0 + x1/2.
+        let two = |right: [i64; 2]| {
+            let mut envelope = Envelope::default();
+            envelope.push(0, 1 << 58);
+            envelope.push(0, 5 << 56);
+            envelope.set(0, -(1 << 57));
+            assert!(envelope.factor());
+            let mut x = right;
+            envelope.solve(&mut x).then_some(x)
+        };
+        assert_eq!(two([far >> 1, far - (far >> 2)]), Some([far, far]));
+        assert_eq!(two([(far >> 1) + 2, far - (far >> 2)]), None);
+    }
+
+    #[test]
+    fn its_work_is_the_products_that_it_takes() {
+        let mut envelope = Envelope::default();
+        // Widths 0, 1, 2, 1, 4.
+        [0, 0, 0, 2, 0].into_iter().for_each(|first| envelope.push(first, 1 << 58));
+        assert_eq!(envelope.work(), 1 + 3 + 1 + 10);
+        envelope.clear();
+        assert_eq!(envelope.work(), 0);
     }
 }

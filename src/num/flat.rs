@@ -57,7 +57,7 @@ pub(crate) const fn beyond(v: i64) -> i64 {
     (v as i32 as i64 != v) as i64
 }
 
-/// [`mul`](super::mul) of a factor and a number from 0 to 2⁴⁷, shifted by 30.
+/// [`mul`](super::mul) of a number of 47 bits, which is not negative, and a factor, shifted by 30.
 #[inline(always)]
 pub(crate) const fn part(value: i64, factor: i64) -> i64 {
     // By halves; what the lower one leaves beyond 16 bits does not reach the rest.
@@ -79,7 +79,7 @@ pub(crate) const fn hold(value: i64, factor: i64) -> i64 {
     add(add(mul(value >> 24, factor), low >> 24), 1 << 23) >> 24
 }
 
-/// 2⁵⁶/v to nearest, for v from 2²⁸ to 2³¹.
+/// 2⁵⁶/v to nearest, for v from 2²⁸ on, below 2³¹.
 ///
 /// By Newton's iteration from a straight line; the last unit by the remainder.
 #[inline(always)]

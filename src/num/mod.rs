@@ -49,6 +49,8 @@ pub(crate) mod lane;
 mod quantity;
 mod root;
 mod round;
+#[cfg(test)]
+mod tests;
 mod trig;
 mod wide;
 

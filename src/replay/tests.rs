@@ -2,6 +2,7 @@
 #![allow(clippy::arithmetic_side_effects, clippy::disallowed_types, reason = "tests, not the engine")]
 
 mod faults;
+mod goldens;
 mod recordings;
 
 use crate::{

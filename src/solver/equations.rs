@@ -6,7 +6,7 @@
 
 use super::direct::{Weight, YIELD};
 use super::rows::{Block, IMPULSE_MAX, LANES};
-use crate::num::envelope::{Envelope, ROWS};
+use crate::num::envelope::Envelope;
 use crate::num::lane::{add, mul, sub};
 use crate::num::{div, round_shift};
 
@@ -60,8 +60,7 @@ pub(super) struct Island {
     pub(super) contacts: Vec<Joined>,
     couplings: Vec<Coupling>,
     envelope: Envelope,
-    /// How many rows are equations, and what solves them.
-    equations: u16,
+    /// What solves the equations.
     pub(super) solution: Vec<i64>,
     /// Bodies, and their velocities when the solve began.
     pub(super) before: Vec<(u32, [i64; 3])>,
@@ -128,7 +127,7 @@ impl Island {
     ) {
         self.contacts.clear();
         self.couplings.clear();
-        (self.work, self.factored, self.equations) = (0, false, 0);
+        (self.work, self.factored) = (0, false);
         (self.pushes, self.tired) = (false, false);
         let least = self.before.iter().map(|&(place, _)| weights[place as usize].shift).min().unwrap_or(0);
         for &(place, _) in &self.before {
@@ -190,12 +189,13 @@ impl Island {
 
     /// Numbers the equations anew.
     pub(super) fn number(&mut self) {
-        (self.equations, self.factored) = (0, false);
+        self.factored = false;
+        let mut next = 0u16;
         for joined in &mut self.contacts {
             joined.row = [NONE; 3];
             for row in joined.equations() {
-                joined.row[row] = self.equations;
-                self.equations = self.equations.saturating_add(1);
+                joined.row[row] = next;
+                next = next.saturating_add(1);
             }
         }
     }
@@ -204,9 +204,6 @@ impl Island {
     pub(super) fn factor(&mut self) -> bool {
         if self.factored {
             return true;
-        }
-        if usize::from(self.equations) > ROWS {
-            return false;
         }
         self.envelope.clear();
         for joined in &self.contacts {

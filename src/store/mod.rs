@@ -8,6 +8,8 @@ mod record;
 mod serial;
 mod sheet;
 mod show;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use arena::{Arena, Row};
 pub use arena::{AttractorId, BodyId, ColliderId};

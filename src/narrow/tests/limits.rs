@@ -3,6 +3,18 @@
 use super::super::near;
 use super::*;
 
+/// Two boxes whose facing edges overlap in one point, or nearly.
+fn corners(noise: &mut Noise) -> (Placed, Placed, [i64; 2]) {
+    let mut side = || 2 * noise.within(M / 16, M);
+    let (a, b) = ([side(), side()], [side(), side()]);
+    let mut d = [0, 1].map(|axis: usize| (a[axis] + b[axis]) / 2);
+    let axis = usize::from(noise.within(0, 1) == 0);
+    d[axis] += noise.within(-M / 16, M / 2);
+    d[1 - axis] += noise.within(-1, 1);
+    let d = d.map(|c| if noise.within(0, 1) == 0 { c } else { -c });
+    (rectangle(a[0], a[1], 0), rectangle(b[0], b[1], 0), d)
+}
+
 /// Outlines that touch, nearly do, or stand corner before corner.
 #[test]
 fn what_is_near_is_the_same_from_one_limit_to_the_other() {
@@ -13,6 +25,7 @@ fn what_is_near_is_the_same_from_one_limit_to_the_other() {
         let (a, b) = (noise.outline(radius), noise.outline(radius));
         let away = noise.within(radius / 2, 3 * radius);
         let d = noise.around(away);
+        let (a, b, d) = if noise.within(0, 9) == 0 { corners(&mut noise) } else { (a, b, d) };
         let limit = noise.within(0, M / 2);
         let seen = near(&a, &b, d, limit);
         assert!(seen.holds(limit), "{seen:?} {limit}");

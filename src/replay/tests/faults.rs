@@ -257,6 +257,14 @@ fn results() -> Vec<Kind> {
     }
 }
 
+/// What a block has a bit a lane of.
+fn bits_of_blocks() -> Vec<Kind> {
+    kinds! {
+        "rows" "pushes" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; bit(&mut w.solver.memory().0[b].pushes, l, i) };
+        "rows" "heavy" PREPARED |w, i of w.touch.pairs.len(), d| { let (b, l, i) = lane(w, i)?; bit(&mut w.solver.memory().0[b].heavy, l, i) };
+    }
+}
+
 /// Some bits of a word of a contact's row.
 fn part(row: &mut [u64; 6], word: usize, from: u32, bits: u32, at: usize, dice: &mut Dice) -> Done {
     let mask = u64::MAX >> (64 - bits);
@@ -264,6 +272,13 @@ fn part(row: &mut [u64; 6], word: usize, from: u32, bits: u32, at: usize, dice: 
     let before = of(row);
     row[word] ^= 1 << (from as usize + dice.below(bits as usize));
     Some((at, before, of(row)))
+}
+
+/// A lane's bit of a block.
+fn bit(byte: &mut u8, lane: usize, at: usize) -> Done {
+    let before = u128::from(*byte >> lane & 1);
+    *byte ^= 1 << lane;
+    Some((at, before, before ^ 1))
 }
 
 /// The seat of a pair's row, and its place in the table of rows.
@@ -397,6 +412,26 @@ fn a_fault_between_stages_is_named_exactly() {
         assert!(*tried >= 2, "{} {} was hit {tried} times", kind.table, kind.field);
     }
     println!("{} kinds of fields, {} faults", kinds.len(), tried.iter().sum::<u32>());
+}
+
+/// A bit of a block is that of one contact.
+#[test]
+fn a_fault_in_a_bit_of_a_block_is_that_of_its_contact() {
+    let (mut dice, mut world) = (Dice(3), world_of_everything());
+    (0..60).for_each(|_| world.step());
+    let clean = Evidence::of_step(&mut world.clone());
+    for kind in bits_of_blocks() {
+        // Not every pair has rows.
+        let mut tries = (0..50).map(|_| {
+            let (faulty, done) =
+                evidence_with(&world, When::End(Stage::Prepare), |world| (kind.flip)(world, &mut dice));
+            Some((faulty, done?))
+        });
+        let (faulty, done) = tries.find_map(|tried| tried).expect("some have");
+        let divergence = clean.first_difference(&faulty).expect("evidence").expect("it differs");
+        assert_eq!((divergence.stage, divergence.findings.len()), (Stage::Prepare, 1), "{divergence:?}");
+        check(&world, &kind, done, &divergence);
+    }
 }
 
 /// Before a stage reads it, and after everybody has looked: what follows from it differs as well, and the fault stands first.
