@@ -171,6 +171,73 @@ fn what_is_disturbed_goes_on_as_if_all_had_been_computed() {
     }
 }
 
+/// What lies on something that stays is known to rows whether it is computed or not.
+#[test]
+fn what_comes_to_where_something_reposes_meets_what_it_would_have_met() {
+    for (kind, restitution, speed) in [
+        (BodyKind::Kinematic, 0.0, 0.5),
+        (BodyKind::Kinematic, 0.0, 3.0),
+        (BodyKind::Kinematic, 0.3, 1.5),
+        (BodyKind::Static, 0.0, 0.5),
+    ] {
+        let mut world = world(0.0, -9.81);
+        let mut platform = fixed(0.0, -1.0, rectangle(100.0, 2.0));
+        platform.kind = kind;
+        add(&mut world, platform);
+        add(&mut world, solid(20.0, 0.5, rectangle(1.0, 1.0)));
+        until_still(&mut world, 200);
+        let mut watched = world.clone();
+        for tick in 0..200 {
+            if tick == 3 {
+                for x in [0.0, 1.0] {
+                    let mut def = moving(solid(x, 1.5, rectangle(1.0, 1.0)), 0.0, -speed);
+                    def.colliders[0].restitution = tamias2d::Restitution::from_f64(restitution).expect("in range");
+                    add(&mut world, def.clone());
+                    add(&mut watched, def);
+                }
+            }
+            step_both(&mut world, &mut watched, || format!("{kind:?}, {restitution}, {speed}"));
+        }
+    }
+}
+
+/// Who falls asleep does so in the same tick, however little quiet is.
+#[test]
+fn what_reposes_falls_asleep_as_if_it_had_been_computed() {
+    for speed in ["0", "0.000001", "0.000003", "0.01"] {
+        let speed = speed.parse().expect("in range");
+        let sleeping = Some(tamias2d::Sleeping { speed, ..tamias2d::Sleeping::default() });
+        let mut world =
+            World::new(&WorldDef { gravity: acc(0.0, -1.0), tick_rate: 15, sleeping, ..WorldDef::default() })
+                .expect("accepted");
+        floor(&mut world);
+        pyramid(&mut world, 0.0, 4);
+        (0..6).for_each(|row| drop(add(&mut world, solid(20.0, 0.5 + f64::from(row), rectangle(1.0, 1.0)))));
+        let mut watched = world.clone();
+        for _ in 0..300 {
+            step_both(&mut world, &mut watched, || format!("quiet up to {speed}"));
+        }
+    }
+}
+
+/// At few ticks a second gravity makes everything fast, and games command something in every tick.
+#[test]
+fn commands_elsewhere_and_coarse_ticks_leave_alone_what_reposes() {
+    let gravity = acc(0.0, -9.81);
+    let mut world = World::new(&WorldDef { gravity, tick_rate: 30, ..WorldDef::default() }).expect("accepted");
+    floor(&mut world);
+    pyramid(&mut world, 0.0, 8);
+    let player = add(&mut world, moving(solid(60.0, 0.5, disc(0.5)), 1.0, 0.0));
+    run(&mut world, 600);
+    let mut watched = world.clone();
+    for tick in 0..200 {
+        let command = Command::SetForce { body: player, force: newtons(f64::from(tick % 3), 0.0) };
+        world.apply(command.clone()).expect("accepted");
+        watched.apply(command).expect("accepted");
+        step_both(&mut world, &mut watched, || "a player far away".into());
+    }
+}
+
 /// Rooms in which something happens now and then: `seeds` of them, for so many ticks.
 fn rooms(seeds: std::ops::Range<u64>, ticks: u64) {
     for seed in seeds {

@@ -168,11 +168,12 @@ impl Solver {
                     && (pair.manifold.count == 0 || strikes(pair, bodies, drive, scales, false) || swings());
             }
         });
-        for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !(pair.sensor || pair.stays)) {
+        for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !pair.sensor) {
             if coming[at] {
                 fast.push(at as u32);
             } else {
-                for slot in pair.bodies {
+                // What others lie on that stay is known to rows all the same.
+                for slot in pair.bodies.into_iter().filter(|&slot| !(pair.stays && repose.holds(slot))) {
                     movers.place(slot, bodies, &mobilities[slot as usize], scales);
                 }
             }
@@ -218,7 +219,7 @@ impl Solver {
             let turn = |pair: &Pair| pair.row != NEW && turns(pair, bodies, mobilities, scales);
             turning.extend(touch.pairs.iter().enumerate().filter(|(_, pair)| turn(pair)).map(|(at, _)| at as u32));
         }
-        movers.look_brisk(drive, scales);
+        movers.look_brisk(repose.slots(), drive, scales);
         if !fast.is_empty() || movers.brisk {
             timeline.remember(bodies);
         }
@@ -350,7 +351,7 @@ impl Solver {
             touch.pairs[pair as usize].met = true;
         }
         repose.put_back(bodies);
-        let lasting = !movers.brisk && drive.sources.is_empty();
+        let lasting = drive.sources.is_empty();
         self.settle(&mut touch.pairs, contacts, bodies, drive, lasting);
         touch.join(&mut self.timeline.late, contacts);
     }

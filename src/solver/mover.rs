@@ -162,14 +162,17 @@ impl Movers {
         place
     }
 
-    /// Before the bodies move: notes whether one of them is, or gets by forces, so fast that rows may send others aside.
-    pub(crate) fn look_brisk(&mut self, drive: &Drive, scales: &Scales) {
+    /// Before the bodies move: notes whether one of them is, or gets by forces, so fast that rows may send others aside; or one of
+    /// `others`, which are at rest.
+    pub(crate) fn look_brisk(&mut self, others: impl Iterator<Item = usize>, drive: &Drive, scales: &Scales) {
         let most = scales.aside.unsigned_abs() / 2;
-        self.brisk = self.courses[1..].iter().any(|course| {
-            let gain = drive.gain(course.slot as usize, scales.margins.tick);
-            course.start.iter().any(|speed| speed.unsigned_abs() > most)
-                || gain.iter().any(|gain| gain.unsigned_abs() >> scales.shift > most)
-        });
+        let gains = |slot: usize| {
+            let gain = drive.gain(slot, scales.margins.tick);
+            gain.iter().any(|gain| gain.unsigned_abs() >> scales.shift > most)
+        };
+        let starts = |course: &Course| course.start.iter().any(|speed| speed.unsigned_abs() > most);
+        self.brisk = self.courses[1..].iter().any(|course| starts(course) || gains(course.slot as usize));
+        self.brisk |= others.into_iter().any(gains);
     }
 
     /// After the bodies have moved as if nothing touched them: what forces do to them in a substep.
@@ -234,6 +237,11 @@ impl Movers {
     /// The place of the body in a slot, 0 if it has none.
     pub(crate) fn place_of(&self, slot: u32) -> u32 {
         self.places.get(slot as usize).copied().unwrap_or(0)
+    }
+
+    /// It ends the tick where it began it.
+    pub(crate) fn stay(&mut self, place: usize) {
+        (self.lanes[place].d, self.lanes[place].phi) = ([0; 2], 0);
     }
 
     /// Whether rows leave it slower than this, Q48.

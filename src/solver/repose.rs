@@ -17,9 +17,12 @@ use crate::geom::Vec2;
 use crate::motion::Drive;
 use crate::num::{Angle, AngularVelocity, Length};
 
-/// How fast a body in repose is when rows are done with it, at most: 16·2⁻²⁰ m/s, Q48. It is what is left over by forces of 1 mm/s² that
-/// nothing answers. With 4 a pile of 1000 boxes never comes to repose; with 8 … 32 it does after 11 s, and a pyramid of 820 after 4.
+/// How fast a body in repose is when rows are done with it, at most: 16·2⁻²⁰ m/s, Q48. With what a body may tremble, what forces would
+/// add to it by 7 µm/s a tick stays: 0.45 mm/s² at 60 ticks/s, 7 mm/s² at 1000. With 4 a pile of 1000 boxes never comes to repose; with 8 … 32 it does after 11 s, and a pyramid of 820 after 4.
 const LEAST: u64 = 16 << 28;
+
+/// As a number of pairs: more than are ever found.
+const FORGOTTEN: u32 = NONE - 1;
 
 /// The islands that are known to end a tick as they begin it. All of it is derived.
 #[derive(Debug, Default)]
@@ -93,12 +96,16 @@ impl Repose {
         self.island(slot).is_some()
     }
 
-    /// A command has made another one of a body: forgets its island.
+    /// A command has made another one of a body: its island is forgotten when the tick begins.
     pub(crate) fn forget(&mut self, slot: usize) {
         if let Some(island) = self.island(slot as u32) {
-            self.found[island] = NONE;
-            self.drop_others();
+            self.pairs[island] = FORGOTTEN;
         }
+    }
+
+    /// The bodies that are known to end the tick as they begin it.
+    pub(super) fn slots(&self) -> impl Iterator<Item = usize> + '_ {
+        self.members.iter().map(|member| member.slot as usize)
     }
 
     /// Forgets the islands of which not all pairs were found.
@@ -248,6 +255,7 @@ impl Solver {
             for place in 1..calm.moves.len() {
                 let Some(island) = calm.island(place as u32) else { continue };
                 halt(bodies, self.movers.slot(place as u32));
+                self.movers.stay(place);
                 calm.fresh[island] |= !lasting || self.before[place][3..] != [0; 3];
             }
             for pair in pairs.iter_mut().filter(|pair| !pair.sensor && !pair.stays) {

@@ -81,12 +81,12 @@ impl World {
         watch.stage(Stage::Forces, self);
         self.sort_sleepers();
         watch.stage(Stage::Sort, self);
-        if W::LOOKS {
-            // All is to be seen.
-            self.solver.repose.clear();
-        }
         let mut attempt = 0;
         loop {
+            if W::LOOKS {
+                // All is to be seen.
+                self.solver.repose.clear();
+            }
             self.find_pairs(crew);
             watch.stage(Stage::Find, self);
             self.prepare_rows(crew);

@@ -39,6 +39,9 @@ def settle(world, pairs, movers):
     for slot in calm:
         world.seen["in repose"] += any((state.vx[slot], state.vy[slot], state.omega[slot]))
         state.vx[slot] = state.vy[slot] = state.omega[slot] = 0
+    for mover in movers.list[1:]:
+        if mover.slot in calm:
+            mover.d[:] = [0, 0, 0]
     for pair in pairs:
         pair.stays = bool(not pair.sensor and pair.contact and calm & set(pair.bodies))
 
