@@ -212,7 +212,9 @@ fn what_reposes_falls_asleep_as_if_it_had_been_computed() {
                 .expect("accepted");
         floor(&mut world);
         pyramid(&mut world, 0.0, 4);
-        (0..6).for_each(|row| drop(add(&mut world, solid(20.0, 0.5 + f64::from(row), rectangle(1.0, 1.0)))));
+        for row in 0..6 {
+            add(&mut world, solid(20.0, 0.5 + f64::from(row), rectangle(1.0, 1.0)));
+        }
         let mut watched = world.clone();
         for _ in 0..300 {
             step_both(&mut world, &mut watched, || format!("quiet up to {speed}"));
