@@ -1,8 +1,9 @@
 //! What a tick costs, and what each part of it adds: `cargo bench --bench step`.
 #![allow(clippy::disallowed_types, clippy::arithmetic_side_effects, reason = "a bench, not the engine")]
 
-use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use criterion::{Bencher, BenchmarkId, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
+use std::time::{Duration, Instant};
 use tamias2d::{Attractor, BodyDef, BodyKind, ColliderDef, Commands, Length, Shape, Sleeping, Vec2, World, WorldDef};
 
 /// `count` free bodies on a grid, each with its own velocity and spin, with or without a box of 1 m.
@@ -26,7 +27,7 @@ fn free_bodies(count: u32, gravity: f64, solid: bool) -> World {
     world
 }
 
-/// A pyramid of unit boxes on the ground, after a second in which it has settled; with sleeping it must not sleep.
+/// A pyramid of unit boxes on the ground, after a second: it comes to rest later. With sleeping it must not sleep.
 fn pyramid(rows: u32, sleeping: Option<Sleeping>) -> World {
     let gravity = Vec2::from_f64(0.0, -9.81).expect("in range");
     let mut world = World::new(&WorldDef { gravity, sleeping, ..WorldDef::default() }).expect("accepted");
@@ -101,6 +102,35 @@ fn pile(count: u32, sleeping: Option<Sleeping>, seconds: u32) -> World {
     world
 }
 
+/// The first ticks of a world, of copies again and again: if it went on it would come to rest.
+fn moving(b: &mut Bencher<'_>, world: &World) {
+    const TICKS: u64 = 60;
+    b.iter_custom(|count| {
+        let (mut copy, mut spent) = (world.clone(), Duration::ZERO);
+        for from in (0..count).step_by(TICKS as usize) {
+            copy.clone_from(world);
+            let begin = Instant::now();
+            (from..count.min(from + TICKS)).for_each(|_| copy.step());
+            spent += begin.elapsed();
+        }
+        spent
+    });
+}
+
+/// Runs until a tick changes nothing that is hashed but the tick.
+fn come_to_rest(world: &mut World) {
+    let state = |world: &World| world.hash_parts()[1..].to_vec();
+    let mut last = state(world);
+    loop {
+        world.step();
+        let now = state(world);
+        if now == last {
+            return;
+        }
+        last = now;
+    }
+}
+
 fn step(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");
     for count in [100, 1_000, 10_000, 100_000] {
@@ -116,13 +146,15 @@ fn step(c: &mut Criterion) {
     group.bench_function("attractor/1000", |b| b.iter(|| world.step()));
     for rows in [10, 40] {
         let mut world = pyramid(rows, None);
-        group.bench_function(BenchmarkId::new("pyramid", rows), |b| b.iter(|| world.step()));
+        group.bench_function(BenchmarkId::new("pyramid", rows), |b| moving(b, &world));
+        come_to_rest(&mut world);
+        group.bench_function(BenchmarkId::new("pyramid at rest", rows), |b| b.iter(|| world.step()));
     }
-    let mut world = pile(1000, None, 40);
-    group.bench_function("pile/1000", |b| b.iter(|| world.step()));
+    let world = pile(1000, None, 4);
+    group.bench_function("pile/1000", |b| moving(b, &world));
     // What sleeping costs what is awake.
-    let mut world = pyramid(40, Some(Sleeping::default()));
-    group.bench_function("pyramid that may sleep/40", |b| b.iter(|| world.step()));
+    let world = pyramid(40, Some(Sleeping::default()));
+    group.bench_function("pyramid that may sleep/40", |b| moving(b, &world));
     group.finish();
 
     let mut group = c.benchmark_group("asleep");

@@ -82,7 +82,7 @@ fn what_stands_comes_to_repose_and_stays_to_the_bit() {
 }
 
 #[test]
-fn what_reposes_allocates_nothing_and_is_not_computed() {
+fn what_reposes_allocates_nothing() {
     let mut world = world(0.0, -9.81);
     floor(&mut world);
     pyramid(&mut world, 0.0, 10);

@@ -7,6 +7,9 @@
 //!
 //! The first is law. The second is a memory of the law's results: it may be empty at any time, and makes no difference.
 
+#[cfg(test)]
+mod tests;
+
 use super::Solver;
 use super::color::VACANT as NONE;
 use super::island::leader_of;
