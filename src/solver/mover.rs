@@ -244,10 +244,14 @@ impl Movers {
         (self.lanes[place].d, self.lanes[place].phi) = ([0; 2], 0);
     }
 
-    /// Whether rows leave it slower than this, Q48.
-    pub(crate) fn is_slower(&self, place: usize, least: u64) -> bool {
-        let mover = &self.lanes[place];
-        [mover.v[0], mover.v[1], mover.w].iter().all(|v| v.unsigned_abs() <= least)
+    /// Whether rows left it no faster than `least`, Q20, and moved it no faster in the tick; none if that is for free motion to say,
+    /// since no contact pushed it.
+    pub(crate) fn creeps(&self, place: usize, least: u32, scales: &Scales) -> Option<bool> {
+        let (mover, course) = (&self.lanes[place], &self.courses[place]);
+        let within = |numbers: [i64; 3], most: u64| numbers.iter().all(|number| number.unsigned_abs() <= most);
+        let slow = within([mover.v[0], mover.v[1], mover.w], u64::from(least) << 28);
+        let near = || within(course.sum, u64::from(least.saturating_mul(scales.substeps)));
+        if slow && !course.hit { None } else { Some(slow && near()) }
     }
 
     /// The slot of the body at a place other than 0.

@@ -1,9 +1,9 @@
 //! Repose: islands that a tick leaves as they are.
 //!
 //! Rows leave some µm/s over, so nothing would ever come to rest exactly: a pile would tremble and creep, and cost what it costs
-//! when it moves. What hangs together by contacts, and of which no body moved in a tick or is left with more than that, ends the tick
-//! as it began it, but without velocity; its contacts keep their impulses as well. From then on each tick of it is the same one, and
-//! what is known need not be computed: as long as it lies among the same neighbours under the same forces, it gets no rows.
+//! when it moves. What hangs together by contacts, and of which no body went faster in a tick than that, or is left faster, ends the
+//! tick as it began it, but without velocity; its contacts keep their impulses as well. From then on each tick of it is the same one,
+//! and what is known need not be computed: as long as it lies among the same neighbours under the same forces, it gets no rows.
 //!
 //! The first is law. The second is a memory of the law's results: it may be empty at any time, and makes no difference.
 
@@ -14,15 +14,17 @@ use super::Solver;
 use super::color::VACANT as NONE;
 use super::island::leader_of;
 use super::mover::Movers;
+use super::scales::Scales;
 use crate::body::{Bodies, BodyKind};
 use crate::contact::{Contact, Contacts, NEW, Pair};
 use crate::geom::Vec2;
 use crate::motion::Drive;
 use crate::num::{Angle, AngularVelocity, Length};
 
-/// How fast a body in repose is when rows are done with it, at most: 16·2⁻²⁰ m/s, Q48. With what a body may tremble, what forces would
-/// add to it by 7 µm/s a tick stays: 0.45 mm/s² at 60 ticks/s, 7 mm/s² at 1000. With 4 a pile of 1000 boxes never comes to repose; with 8 … 32 it does after 11 s, and a pyramid of 820 after 4.
-const LEAST: u64 = 16 << 28;
+/// How fast a body in repose went in the tick, and how fast it is when rows are done with it, at most: 16·2⁻²⁰ m/s, Q20. So what
+/// forces would add to it by 15 µm/s a tick stays: 0.9 mm/s² at 60 ticks/s, 15 mm/s² at 1000. With 4, one of
+/// 4000 boxes kept all of a settled pile from it for four seconds.
+const LEAST: u32 = 16;
 
 /// As a number of pairs: more than are ever found.
 const FORGOTTEN: u32 = NONE - 1;
@@ -153,10 +155,8 @@ impl Repose {
 
     /// Puts the bodies back that had no rows.
     pub(crate) fn put_back(&self, bodies: &mut Bodies) {
-        for &Member { slot, at: [x, y, angle], .. } in &self.members {
-            bodies.set_position(slot as usize, Vec2::new(Length::from_bits(x), Length::from_bits(y)));
-            bodies.angle.set(slot as usize, Angle::from_bits(angle));
-            halt(bodies, slot as usize);
+        for &Member { slot, at, .. } in &self.members {
+            put(bodies, slot as usize, at);
         }
     }
 
@@ -184,7 +184,7 @@ impl Calm {
     }
 
     /// Each body by itself; whether any is calm.
-    fn find(&mut self, movers: &Movers, before: &[[i64; 6]], free: &[bool], bodies: &Bodies) -> bool {
+    fn find(&mut self, movers: &Movers, before: &[[i64; 6]], free: &[bool], bodies: &Bodies, scales: &Scales) -> bool {
         let Calm { moves, leader, up, fresh, pairs } = self;
         moves.clear();
         leader.clear();
@@ -199,7 +199,8 @@ impl Calm {
             let own = place != 0 && !free && !bodies.rest.is_asleep(slot);
             let now = || [bodies.x.bits()[slot], bodies.y.bits()[slot], bodies.angle.bits()[slot]];
             moves.push(own);
-            up.push(!own || !movers.is_slower(place, LEAST) || now() != [x, y, angle]);
+            let stays = || movers.creeps(place, LEAST, scales).unwrap_or_else(|| now() == [x, y, angle]);
+            up.push(!own || !stays());
         }
         up.contains(&false)
     }
@@ -254,12 +255,15 @@ impl Solver {
         lasting: bool,
     ) {
         let mut calm = core::mem::take(&mut self.repose.calm);
-        if calm.find(&self.movers, &self.before, &self.free, bodies) && self.find_calm(&mut calm, pairs, contacts) {
+        if calm.find(&self.movers, &self.before, &self.free, bodies, &self.scales)
+            && self.find_calm(&mut calm, pairs, contacts)
+        {
             for place in 1..calm.moves.len() {
                 let Some(island) = calm.island(place as u32) else { continue };
-                halt(bodies, self.movers.slot(place as u32));
+                let [x, y, angle, velocity @ ..] = self.before[place];
+                put(bodies, self.movers.slot(place as u32), [x, y, angle]);
                 self.movers.stay(place);
-                calm.fresh[island] |= !lasting || self.before[place][3..] != [0; 3];
+                calm.fresh[island] |= !lasting || velocity != [0; 3];
             }
             for pair in pairs.iter_mut().filter(|pair| !pair.sensor && !pair.stays) {
                 let [a, b] = pair.bodies.map(|slot| calm.island(self.movers.place_of(slot)));
@@ -312,7 +316,10 @@ fn stays(bodies: &Bodies, slot: usize) -> bool {
     bodies.is_still(slot) || bodies.cold.value(slot).kind == BodyKind::Kinematic && !moves(bodies, slot)
 }
 
-fn halt(bodies: &mut Bodies, slot: usize) {
+/// Puts a body somewhere, without velocity.
+fn put(bodies: &mut Bodies, slot: usize, [x, y, angle]: [i64; 3]) {
+    bodies.set_position(slot, Vec2::new(Length::from_bits(x), Length::from_bits(y)));
+    bodies.angle.set(slot, Angle::from_bits(angle));
     bodies.set_velocity(slot, Vec2::default());
     bodies.omega.set(slot, AngularVelocity::ZERO);
 }

@@ -306,10 +306,7 @@ impl Timeline {
     ) {
         self.from = from;
         self.follow(to, stage, movers);
-        while let Some(&Reverse((time, ..))) = self.queue.peek() {
-            if time > to {
-                break;
-            }
+        while let Some(time) = self.first().filter(|&time| time <= to) {
             // What an answer sends on meets after all that met with it, so ids have no say in it.
             self.take_batch(time);
             while self.gather(stage) {
@@ -317,6 +314,18 @@ impl Timeline {
             }
         }
         self.settle(to, stage, movers);
+    }
+
+    /// When the next pair meets. Times that are no longer a pair's have no say in what meets at one time, so a look that
+    /// another one overtakes might as well have been left out.
+    fn first(&mut self) -> Option<i64> {
+        while let Some(&Reverse((time, _, _, at))) = self.queue.peek() {
+            if self.engaged[at as usize].time == time {
+                return Some(time);
+            }
+            self.queue.pop();
+        }
+        None
     }
 
     /// Takes the pairs that meet at a time out of the queue, in order.

@@ -12,7 +12,6 @@ CONTACT_SPEED = 5
 TURNING = 1 << 44
 EIGHTH_TURN = 843_314_857
 BOUND = 1 << 60
-TREMOR = 4
 
 
 def bounded(v):
@@ -190,13 +189,6 @@ class Movers:
         mover.v = then
         mover.go(scales)
 
-    def way(self, mover):
-        """What it went; nothing if that is only what rows leave over of rest."""
-        if any(abs(way) > TREMOR * self.scales.substeps for way in mover.sum):
-            return mover.sum
-        self.world.seen["stayed in spite of a tremor"] += any(mover.sum)
-        return [0, 0, 0]
-
     def store(self, faults):
         """Bodies that contacts pushed, to where contacts bring them."""
         state, scales, k = self.world.state, self.scales, self.scales.shift
@@ -206,7 +198,7 @@ class Movers:
                 continue
             if mover.slowed:
                 faults.append((slot, CONTACT_SPEED))
-            way = self.way(mover)
+            way = mover.sum
             for axis, column in enumerate((state.x, state.y)):
                 moved = begin.x[axis] + mul(way[axis], scales.line, 51 - k)
                 column[slot] = clamp(moved, -FAR, FAR)

@@ -2,7 +2,7 @@
 
 from pairs import lasts, outcome
 
-LEAST = 16 << 28
+LEAST = 16
 
 
 def settle(world, pairs, movers):
@@ -12,7 +12,9 @@ def settle(world, pairs, movers):
         if place and not movers.is_free(place) and not world.is_asleep(mover.slot):
             began, slot = past[mover.slot], mover.slot
             stays = [state.x[slot], state.y[slot], state.angle[slot]] == [*began.x, began.angle]
-            moving[place] = stays and all(abs(v) <= LEAST for v in mover.v)
+            if mover.hit:
+                stays = all(abs(way) <= LEAST * movers.scales.substeps for way in mover.sum)
+            moving[place] = stays and all(abs(v) <= LEAST << 28 for v in mover.v)
     up = {place for place, calm in moving.items() if not calm}
     edges = {}
     for pair in pairs:
@@ -38,6 +40,7 @@ def settle(world, pairs, movers):
     calm = {movers.list[place].slot for place in moving if place not in up}
     for slot in calm:
         world.seen["in repose"] += any((state.vx[slot], state.vy[slot], state.omega[slot]))
+        (state.x[slot], state.y[slot]), state.angle[slot] = past[slot].x, past[slot].angle
         state.vx[slot] = state.vy[slot] = state.omega[slot] = 0
     for mover in movers.list[1:]:
         if mover.slot in calm:

@@ -31,7 +31,7 @@ class Timeline(Ways):
         """Answers the impacts up to a time. `start`: where the substep began."""
         self.start, self.end = start, end
         self.follow()
-        while self.queue and self.queue[0][0] <= end:
+        while self.first() <= end:
             self.take_batch()
             while self.gather():
                 self.answer()
@@ -46,6 +46,12 @@ class Timeline(Ways):
                 moved = any(self.flights[place].pushed for place in pair.flights)
                 if moved and (not pair.held or pair.restitution >= ONE):
                     self.foresee(pair, self.start, self.end)
+
+    def first(self):
+        """When the next pair meets, whose time it still is."""
+        while self.queue and self.engaged[self.queue[0][-1]].time != self.queue[0][0]:
+            heappop(self.queue)
+        return self.queue[0][0] if self.queue else NEVER
 
     def take_batch(self):
         """The pairs that meet at a time, in the order of their colliders."""

@@ -528,7 +528,7 @@ fn a_fault_between_substeps_is_named_exactly() {
     let mut world = world_of_everything();
     let mut dice = Dice(3);
     let mut named = 0;
-    for seed in 0..40 {
+    for seed in 0..60 {
         ready(&mut world, &mut dice);
         let clean = Evidence::of_step(&mut world.clone());
         let (mut evidence, mut draft) = (Evidence::default(), Draft::default());

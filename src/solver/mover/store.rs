@@ -1,24 +1,12 @@
 //! Where contacts brought the bodies that they pushed.
 
-use super::{Course, Movers};
+use super::Movers;
 use crate::body::Bodies;
 use crate::geom::Vec2;
 use crate::motion::{Bound, Fault, turn_by};
 use crate::num::{Angle, AngularVelocity, Length, Quantity, Velocity, add_sat, clamp_i64, mul};
 use crate::solver::mobility::Mobility;
 use crate::solver::scales::Scales;
-
-/// What rows leave over of rest, 2⁻²⁰ m/s: it is not quite even, so a box on a slope crept by 0.4 mm in 10⁶ ticks. With 10 nothing
-/// creeps at all, but a box that has slid keeps 8 µm/s.
-const TREMOR: u32 = 4;
-
-impl Course {
-    /// The way over h; none if that is only what rows leave over of rest.
-    fn way(&self, scales: &Scales) -> [i64; 3] {
-        let least = u64::from(scales.substeps.saturating_mul(TREMOR));
-        if self.sum.iter().all(|way| way.unsigned_abs() <= least) { [0; 3] } else { self.sum }
-    }
-}
 
 impl Movers {
     /// What contacts made of the bodies that they pushed, instead of what free motion did. Bodies that nothing pushed
@@ -41,7 +29,7 @@ impl Movers {
                 faults.push(Fault { slot, bound: Bound::ContactSpeed });
             }
             let k = scales.shift;
-            let sum = course.way(scales);
+            let sum = course.sum;
             let [x, y, angle, vx, vy, omega] = *before;
             let mut place = |from: i64, sum: i64| {
                 let moved = from.saturating_add(mul(sum, scales.line, 51u32.saturating_sub(k)));
