@@ -9,8 +9,9 @@ use super::search::Found;
 use super::ways::way;
 use crate::body::Bodies;
 use crate::motion::Drive;
-use crate::narrow::{Manifold, Near, near, overlap};
+use crate::narrow::{Faces, Manifold, Near, near, overlap};
 use crate::num::{cross, dot, mul};
+use crate::shape::Placed;
 
 /// Farther than limits are, 2¹⁶ m: sums with it stay in range.
 const FAR: i64 = 1 << 48;
@@ -24,6 +25,7 @@ pub(super) struct Look {
     /// Where b's centre was from a's, Q32 m.
     pub(super) d: [i64; 2],
     pub(super) near: Near,
+    pub(super) faces: Faces,
 }
 
 impl Look {
@@ -33,14 +35,28 @@ impl Look {
         self.d == d && self.tick >= a.turned.tick.max(b.turned.tick)
     }
 
+    /// Looks at the pair in the tick `now`.
+    fn renew(&mut self, now: u64, d: [i64; 2], proxies: [&Proxy; 2], [a, b]: [&Placed; 2], limit: i64) {
+        // An outline that is another one has other edges.
+        if self.tick < proxies[0].turned.since.max(proxies[1].turned.since) {
+            self.faces = Faces::default();
+        }
+        self.faces.follow([self.d, d], proxies.map(|proxy| proxy.turned.angle), proxies.map(|proxy| proxy.reach));
+        self.near = near(a, b, d, limit, &mut self.faces);
+        (self.tick, self.d) = (now, d);
+    }
+
     /// Whether it is what is seen afresh, as far as its outlines still lie so.
     pub(super) fn check(&self, proxies: &Proxies) -> bool {
-        let Look { colliders, tick: _, d, near: Near { apart, manifold, from, below } } = self;
+        let Look { colliders, tick: _, d, near: Near { apart, manifold, from, below }, faces } = self;
         let slots = colliders.map(|slot| slot as usize);
         let both = slots.map(|slot| proxies.get(slot));
         let same = |limit: i64| {
-            let fresh = near(proxies.placed(slots[0]), proxies.placed(slots[1]), *d, limit);
-            fresh.apart == *apart && fresh.manifold == *manifold
+            let [a, b] = slots.map(|slot| proxies.placed(slot));
+            let fresh = near(a, b, *d, limit, &mut Faces::default());
+            let again = near(a, b, *d, limit, &mut faces.clone());
+            let is = |near: &Near| near.apart == *apart && near.manifold == *manifold;
+            is(&fresh) && is(&again)
         };
         let sensor = both.iter().any(|proxy| proxy.sensor);
         let lie = both.iter().all(|proxy| proxy.turned.done) && self.is_of(*d, both);
@@ -163,15 +179,15 @@ impl See<'_> {
         let between = |c: &[i64]| c[b.body as usize].saturating_sub(c[a.body as usize]);
         let d = [between(bodies.x.bits()), between(bodies.y.bits())];
         let mut known = look.is_of(d, [a, b]);
-        let [placed_a, placed_b] = slots.map(|slot| proxies.placed(slot));
+        let placed = slots.map(|slot| proxies.placed(slot));
         if a.sensor || b.sensor {
-            return overlap(placed_a, placed_b, d).then(Manifold::default);
+            return overlap(placed[0], placed[1], d).then(Manifold::default);
         }
         // Where all points are within the margin it does not matter how fast they are, and most pairs stay so.
         let rests = |near: &Near| near.manifold.count > 0 && near.holds(margins.base) && near.below == i64::MAX;
         let rested = rests(&look.near);
         if rested && !known {
-            (look.tick, look.d, look.near) = (proxies.now(), d, near(placed_a, placed_b, d, margins.base));
+            look.renew(proxies.now(), d, [a, b], placed, margins.base);
             known = true;
         }
         if rested && rests(&look.near) {
@@ -180,7 +196,7 @@ impl See<'_> {
         let ahead = self.ahead();
         let limit = margins.base.saturating_add(ahead);
         if !known || !look.near.holds(limit) {
-            (look.tick, look.d, look.near) = (proxies.now(), d, near(placed_a, placed_b, d, limit));
+            look.renew(proxies.now(), d, [a, b], placed, limit);
         }
         let Near { apart, ref manifold, from, .. } = look.near;
         if apart {

@@ -38,8 +38,10 @@ pub(super) struct Turned {
     /// Whether it was asked for in the last tick.
     asked: bool,
     /// The angle for which it was turned, and in which tick.
-    angle: i64,
+    pub(super) angle: i64,
     pub(super) tick: u64,
+    /// The first tick in which it may be this one, and not that of another form.
+    pub(super) since: u64,
 }
 
 /// All colliders, by slot.
@@ -128,6 +130,7 @@ impl Proxies {
         let proxy = Proxy::new(slot, bodies, colliders);
         let (at, reach) = (bodies.position(proxy.body as usize), proxy.reach);
         self.list[slot] = proxy;
+        self.list[slot].turned.since = self.now.wrapping_add(1);
         self.boxes[slot] = around(at, [reach.saturating_neg(); 2], [reach; 2]);
         if proxy.still {
             self.placed[slot] = turn(&mut self.list[slot], self.now, bodies, colliders.outline(slot));
@@ -253,6 +256,6 @@ impl Placing<'_> {
 /// A collider's outline as it lies in the tick `now`.
 fn turn(proxy: &mut Proxy, now: u64, bodies: &Bodies, outline: &Outline) -> Placed {
     let angle = bodies.angle.get(proxy.body as usize);
-    proxy.turned = Turned { done: true, asked: false, angle: angle.to_bits(), tick: now };
+    proxy.turned = Turned { done: true, asked: false, angle: angle.to_bits(), tick: now, ..proxy.turned };
     Placed::new(outline, Rot::new(angle))
 }

@@ -9,6 +9,7 @@
 //! most of it from the 30 fraction bits of the normals. Where an edge ends over a slanted one, the error along it is
 //! multiplied by the slope.
 
+use super::faces::Faces;
 use super::{circle, polygon};
 use crate::shape::Placed;
 
@@ -73,11 +74,11 @@ impl Near {
 ///
 /// Range: |d| < 2⁵⁰, vertices below 2⁴⁸: differences stay below 2⁵², their products with Q30 normals below 2⁸⁴.
 pub(crate) fn collide(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Manifold {
-    near(a, b, d, limit).manifold
+    near(a, b, d, limit, &mut Faces::default()).manifold
 }
 
-/// The same, and which limits would give it as well.
-pub(crate) fn near(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Near {
+/// The same, and which limits would give it as well. `faces`: what is known of how polygons lie.
+pub(crate) fn near(a: &Placed, b: &Placed, d: [i64; 2], limit: i64, faces: &mut Faces) -> Near {
     if a.count <= 1 && b.count <= 1 {
         return match circle::from_circle(a, b, d, limit) {
             Ok(contact) => single(contact, true, d, i64::MIN),
@@ -99,7 +100,7 @@ pub(crate) fn near(a: &Placed, b: &Placed, d: [i64; 2], limit: i64) -> Near {
     } else if a.count <= 1 {
         circle::from_polygon(b, a, d.map(i64::wrapping_neg), limit)
     } else {
-        return polygon::near(a, b, d, limit, boxes);
+        return polygon::near(a, b, d, limit, boxes, faces);
     };
     match contact {
         Ok(contact) => single(contact, b.count <= 1, d, boxes),

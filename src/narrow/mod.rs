@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `manifold` | what comes out, and which of the three cases it is |
 //! | `polygon` | two polygons: separating axes, clipped edges |
+//! | `faces` | which edges of two polygons face each other, from before
 //! | `circle` | a circle against a polygon or a circle |
 //! | `overlap` | whether outlines have a point in common |
 //! | `query` | points in outlines, nearest points, rays |
@@ -14,6 +15,7 @@
 mod circle;
 mod clearance;
 mod course;
+mod faces;
 mod manifold;
 mod meeting;
 mod moment;
@@ -25,6 +27,7 @@ mod tests;
 mod unit;
 
 pub(crate) use clearance::Clearance;
+pub(crate) use faces::Faces;
 pub(crate) use manifold::{Manifold, Near, Point, collide, near};
 pub(crate) use meeting::{Motion, first_touch};
 pub(crate) use overlap::overlap;

@@ -5,6 +5,7 @@
 
 use core::cmp::Ordering;
 
+use super::faces::{Faces, Outermost};
 use super::manifold::{Manifold, Near, Point};
 use super::{along, difference, next, previous, rounded, sum};
 use crate::num::{clamp_i64, div, mul};
@@ -53,9 +54,14 @@ impl View<'_> {
     /// The face of greatest separation (ties: lower index); if that is more than `limit`, a separation that is.
     ///
     /// A point in the other polygon is no farther out than its nearest vertex, so the middle of a diagonal bounds the
-    /// separation from an edge: few edges need a look at all vertices. The choice is that of looking at all of them.
+    /// separation from an edge: few edges need a look at all vertices. The choice is that of looking at all of them. `known`
+    /// is told which one it is, and asked first.
     #[inline]
-    fn greatest(&self, limit: i64) -> Result<Face, i64> {
+    fn greatest(&self, limit: i64, known: &mut Outermost) -> Result<Face, i64> {
+        if let Some(edge) = known.known() {
+            let (nearest, separation) = self.separation(edge);
+            return if separation > limit { Err(separation) } else { Ok(Face { edge, nearest, separation }) };
+        }
         let half = usize::from(self.other.count / 2);
         let middle = sum(self.other.vertices[0], self.other.vertices[half]).map(|c| c >> 1);
         let middle = sum(middle, self.shift);
@@ -71,9 +77,15 @@ impl View<'_> {
         if separation > limit {
             return Err(separation);
         }
+        let mut second = i64::MIN;
         for (edge, &bound) in bounds[..count].iter().enumerate() {
+            if edge == outermost {
+                continue;
+            }
             // Two units for the rounding of the middle and of both numbers.
-            if edge == outermost || rounded(bound).wrapping_add(2) < best.separation {
+            let most = rounded(bound).wrapping_add(2);
+            if most < best.separation {
+                second = second.max(most);
                 continue;
             }
             let (nearest, separation) = self.separation(edge);
@@ -81,9 +93,13 @@ impl View<'_> {
                 return Err(separation);
             }
             if separation > best.separation || separation == best.separation && edge < best.edge {
+                second = second.max(best.separation);
                 best = Face { edge, nearest, separation };
+            } else {
+                second = second.max(separation);
             }
         }
+        *known = Outermost::new(best.edge, best.separation.saturating_sub(second));
         Ok(best)
     }
 
@@ -185,9 +201,10 @@ pub(super) fn between(a: i64, b: i64, part: i64, whole: i64) -> i64 {
 }
 
 /// `boxes`: how far apart their boxes are, which is no more than the limit.
-pub(super) fn near(a: &Placed, b: &Placed, d: [i64; 2], limit: i64, boxes: i64) -> Near {
+pub(super) fn near(a: &Placed, b: &Placed, d: [i64; 2], limit: i64, boxes: i64, known: &mut Faces) -> Near {
     let views = [View { own: a, other: b, shift: d }, View { own: b, other: a, shift: d.map(i64::wrapping_neg) }];
-    let faces = views[0].greatest(limit).and_then(|of_a| Ok([of_a, views[1].greatest(limit)?]));
+    let mut greatest = |polygon: usize| views[polygon].greatest(limit, known.of(polygon));
+    let faces = greatest(0).and_then(|of_a| Ok([of_a, greatest(1)?]));
     let [of_a, of_b] = match faces {
         Ok(faces) => faces,
         Err(by) => return Near::apart(by),

@@ -2,6 +2,7 @@
 #![allow(clippy::arithmetic_side_effects, reason = "tests, not the engine")]
 
 mod exact;
+mod faces;
 mod hard;
 mod identity;
 mod limits;
@@ -11,7 +12,7 @@ mod queries;
 mod search;
 mod symmetry;
 
-use super::{Manifold, closest, collide};
+use super::{Faces, Manifold, closest, collide};
 use crate::geom::{Rot, Vec2};
 use crate::num::{Angle, Length, mul, sin_cos};
 use crate::shape::{Placed, Shape};

@@ -27,11 +27,11 @@ fn what_is_near_is_the_same_from_one_limit_to_the_other() {
         let d = noise.around(away);
         let (a, b, d) = if noise.within(0, 9) == 0 { corners(&mut noise) } else { (a, b, d) };
         let limit = noise.within(0, M / 2);
-        let seen = near(&a, &b, d, limit);
+        let seen = near(&a, &b, d, limit, &mut Faces::default());
         assert!(seen.holds(limit), "{seen:?} {limit}");
         let (low, high) = (seen.from.max(0), seen.below.min(M) - 1);
         for other in [low, high.max(low), noise.within(low, high.max(low)), noise.within(0, M)] {
-            let again = near(&a, &b, d, other);
+            let again = near(&a, &b, d, other, &mut Faces::default());
             if seen.holds(other) {
                 assert_eq!((seen.apart, &seen.manifold), (again.apart, &again.manifold), "{limit} {other}");
             }
