@@ -1,4 +1,7 @@
 //! Which code solves blocks: the definition, or lanes side by side where the processor can. The bits are the same.
+//!
+//! On x86_64 it is asked for AVX-512 and AVX2 once a world. On aarch64, and on WebAssembly with `simd128`, there are plain arrays
+//! (`build.rs`); all others have the definition alone. Tests have all of them.
 
 #[cfg(target_arch = "x86_64")]
 use super::avx2::Avx2;
@@ -109,6 +112,7 @@ impl Kernel {
             Kernel::Avx512(avx512) => avx512.warm_start(block, movers),
         }
     }
+
     /// [`Joints::write`].
     #[inline]
     pub(super) fn prepare(self, joints: &Joints, block: &mut Block, shift: u32) -> u8 {

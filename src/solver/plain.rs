@@ -1,10 +1,10 @@
 //! Lanes side by side in plain arrays: safe code, of which a compiler makes the vectors that its processor has.
 //!
-//! It does so where a loop over arrays has no branches, and its vectors are as long as the widest number that the loop reads
-//! or writes lets them be. So there are three loops: what rows read of velocities of 64 bits, all rows in 32, and what the
-//! velocities gain. The words are those of a [`Pair`], number i and number i + 4: four times two is a loop that becomes a
-//! straight line over all eight, and it hides that each contact waits for its own answers. Words of eight numbers at once
-//! were taken apart into eight times one, and those of one number gave loops of two or four lanes, a third to twice as slow.
+//! It does so where a loop over arrays has no branches, and its vectors are as long as the widest number that the loop loads
+//! or stores lets them be. So there are three loops: what rows read of velocities of 64 bits; all rows, in 32; and what the
+//! velocities gain. The words are those of a [`Pair`], lanes i and i + 4: said four times, that is one straight line over all
+//! eight, in which none waits for another's answers. What failed: eight numbers a word, which a compiler takes apart into
+//! single ones before it looks for vectors; one number a word, which gives loops over two or four lanes (a third slower).
 
 use super::mover::Mover;
 use super::rows::{Block, LANES, Lane};
@@ -102,12 +102,26 @@ fn speeds([a, b]: &[Columns; 2]) -> ([Lane; 2], [Lane; 2]) {
 /// [`sweep::give`].
 #[inline(always)]
 fn give(block: &Block, [a, b]: &mut [Columns; 2], [slide, first, second]: &[Lane; 3]) {
+    let mut over = 0;
     for plain in Plain::all() {
         let change = [plain.load(slide), plain.load(first), plain.load(second)];
         let [speed_a, speed_b] = sweep::give(plain, block, [a.speed(plain), b.speed(plain)], change);
+        over |= above(&speed_a) | above(&speed_b);
         a.set(plain, speed_a);
         b.set(plain, speed_b);
     }
+    // As in `held`, nearly never.
+    if over as u64 >= 2 * lane::HELD as u64 {
+        a.hold();
+        b.hold();
+    }
+}
+
+/// Velocities from the lower bound on, or'ed: one that is beyond a bound sets a bit from 58 on.
+#[inline(always)]
+fn above(Eight { v: [x, y], w, .. }: &Eight<Plain>) -> i64 {
+    let [x, y, w] = [x, y, w].map(|speed| speed.each(|speed| speed.wrapping_add(lane::HELD)));
+    x.0 | x.1 | y.0 | y.1 | w.0 | w.1
 }
 
 impl Columns {
@@ -129,6 +143,14 @@ impl Columns {
             let mover = &mut movers[*place as usize];
             mover.v = [self.v[0][i], self.v[1][i]];
             mover.w = self.w[i];
+        }
+    }
+
+    #[cold]
+    fn hold(&mut self) {
+        let [x, y] = &mut self.v;
+        for speed in x.iter_mut().chain(y).chain(&mut self.w) {
+            *speed = lane::clamp(*speed, -lane::HELD, lane::HELD);
         }
     }
 
@@ -213,10 +235,10 @@ impl Words for Plain {
         self.put(narrow, lane);
     }
 
+    /// They are held after the loop.
     #[inline(always)]
-    fn held(self, Eight { v, w, phi }: Eight<Self>) -> Eight<Self> {
-        let within = |speed: Pair<i64>| speed.each(|speed| lane::clamp(speed, -lane::HELD, lane::HELD));
-        Eight { v: v.map(within), w: within(w), phi }
+    fn held(self, eight: Eight<Self>) -> Eight<Self> {
+        eight
     }
 }
 

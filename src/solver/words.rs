@@ -1,7 +1,8 @@
 //! The words in which a sweep over eight contacts side by side is written, whatever instructions a processor has for them.
 //!
-//! A set of words is a type whose values exist only where its instructions do. What a word means is said here once; the
-//! definition, of which all sets give the bits, is [`Block::solve`](super::rows::Block::solve).
+//! A set of words is a type whose values exist only where its instructions do; for plain arrays (`plain.rs`) there are words
+//! of two lanes, which a loop says four times. What a word means is said here once; the definition, of which all sets give the
+//! bits, is [`Block::solve`](super::rows::Block::solve).
 
 use super::mover::Mover;
 use super::rows::{LANES, Lane};
@@ -31,7 +32,7 @@ pub(super) trait Words: Copy {
     fn held(self, eight: Eight<Self>) -> Eight<Self>;
 }
 
-/// Words that reach what lies in any order, and say yes or no.
+/// Words of all eight lanes: they reach bodies in any order, and say yes or no.
 pub(super) trait Reach: Words {
     /// Those of eight contacts that are to be solved: their bits are set, and their bodies are two.
     fn chosen(self, bodies: &[[u32; LANES]; 2], lanes: u8) -> Self::Mask;
