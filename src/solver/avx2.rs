@@ -11,7 +11,7 @@ use super::prepare::Joints;
 use super::rows::{Block, LANES, Lane};
 use super::scales::Scales;
 use super::sweep;
-use super::words::{self, Eight, Factor as _, Mask as _, Narrow as _, Wide as _, Words};
+use super::words::{self, Eight, Factor as _, Mask as _, Narrow as _, Reach, Wide as _, Words};
 
 /// That this processor has AVX2. Of it come all values of the types below.
 #[derive(Clone, Copy, Debug)]
@@ -116,6 +116,26 @@ impl Words for Avx2 {
     }
 
     #[inline(always)]
+    fn store(self, narrow: Narrow, lane: &mut Lane) {
+        vector!(_mm256_storeu_si256(lane.as_mut_ptr().cast(), narrow.0));
+    }
+
+    #[inline(always)]
+    fn held(self, eight: Eight<Avx2>) -> Eight<Avx2> {
+        let [least, most] = [self.wide(-(1 << 57)), self.wide(1 << 57)];
+        let Eight { v: [x, y], w, phi } = eight;
+        let over = x.add(most).or(y.add(most)).or(w.add(most)).down::<58>();
+        if !self.any(over.low().narrow()) {
+            return eight;
+        }
+        // Nearly never.
+        let within = |speed: Wide| speed.min(most).max(least);
+        Eight { v: [within(x), within(y)], w: within(w), phi }
+    }
+}
+
+impl Reach for Avx2 {
+    #[inline(always)]
     fn chosen(self, bodies: &[[u32; LANES]; 2], lanes: u8) -> Mask {
         let bits = vector!(_mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128));
         let a = vector!(_mm256_loadu_si256(bodies[0].as_ptr().cast()));
@@ -161,25 +181,17 @@ impl Words for Avx2 {
     }
 
     #[inline(always)]
-    fn held(self, eight: Eight<Avx2>) -> Eight<Avx2> {
-        let [least, most] = [self.wide(-(1 << 57)), self.wide(1 << 57)];
-        let Eight { v: [x, y], w, phi } = eight;
-        let over = x.add(most).or(y.add(most)).or(w.add(most)).down::<58>();
-        if !over.low().narrow().any() {
-            return eight;
-        }
-        // Nearly never.
-        let within = |speed: Wide| speed.min(most).max(least);
-        Eight { v: [within(x), within(y)], w: within(w), phi }
+    fn any(self, narrow: Narrow) -> bool {
+        vector!(_mm256_testz_si256(narrow.0, narrow.0)) == 0
+    }
+
+    #[inline(always)]
+    fn bits(self, mask: Mask) -> u8 {
+        vector!(_mm256_movemask_ps(_mm256_castsi256_ps(mask.0))) as u8
     }
 }
 
 impl words::Narrow<Avx2> for Narrow {
-    #[inline(always)]
-    fn store(self, lane: &mut Lane) {
-        vector!(_mm256_storeu_si256(lane.as_mut_ptr().cast(), self.0));
-    }
-
     #[inline(always)]
     fn factor(self) -> Factor {
         Factor(self.0, vector!(_mm256_srli_epi64::<32>(self.0)))
@@ -224,11 +236,6 @@ impl words::Narrow<Avx2> for Narrow {
     fn above(self, other: Narrow) -> Mask {
         Mask(vector!(_mm256_cmpgt_epi32(self.0, other.0)))
     }
-
-    #[inline(always)]
-    fn any(self) -> bool {
-        vector!(_mm256_testz_si256(self.0, self.0)) == 0
-    }
 }
 
 impl words::Mask<Avx2> for Mask {
@@ -245,11 +252,6 @@ impl words::Mask<Avx2> for Mask {
     #[inline(always)]
     fn pick(self, yes: Narrow, no: Narrow) -> Narrow {
         Narrow(vector!(_mm256_blendv_epi8(no.0, yes.0, self.0)))
-    }
-
-    #[inline(always)]
-    fn bits(self) -> u8 {
-        vector!(_mm256_movemask_ps(_mm256_castsi256_ps(self.0))) as u8
     }
 }
 

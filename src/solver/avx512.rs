@@ -12,7 +12,7 @@ use super::prepare::Joints;
 use super::rows::{Block, LANES, Lane};
 use super::scales::Scales;
 use super::sweep;
-use super::words::{self, Eight, Factor as _, Wide as _, Words};
+use super::words::{self, Eight, Factor as _, Reach, Wide as _, Words};
 
 /// That this processor has AVX-512 with its instructions for shorter vectors. Of it come all values of the types below.
 #[derive(Clone, Copy, Debug)]
@@ -129,6 +129,21 @@ impl Words for Avx512 {
     }
 
     #[inline(always)]
+    fn store(self, narrow: Narrow, lane: &mut Lane) {
+        vector!(_mm256_storeu_si256(lane.as_mut_ptr().cast(), _mm512_cvtepi64_epi32(narrow.0)));
+    }
+
+    #[inline(always)]
+    fn held(self, eight: Eight<Avx512>) -> Eight<Avx512> {
+        let [least, most] = [self.wide(-(1 << 57)), self.wide(1 << 57)];
+        let within = |speed: Wide| speed.min(most).max(least);
+        let Eight { v: [x, y], w, phi } = eight;
+        Eight { v: [within(x), within(y)], w: within(w), phi }
+    }
+}
+
+impl Reach for Avx512 {
+    #[inline(always)]
     fn chosen(self, bodies: &[[u32; LANES]; 2], lanes: u8) -> Mask {
         let a = vector!(_mm256_loadu_si256(bodies[0].as_ptr().cast()));
         let b = vector!(_mm256_loadu_si256(bodies[1].as_ptr().cast()));
@@ -178,20 +193,17 @@ impl Words for Avx512 {
     }
 
     #[inline(always)]
-    fn held(self, eight: Eight<Avx512>) -> Eight<Avx512> {
-        let [least, most] = [self.wide(-(1 << 57)), self.wide(1 << 57)];
-        let within = |speed: Wide| speed.min(most).max(least);
-        let Eight { v: [x, y], w, phi } = eight;
-        Eight { v: [within(x), within(y)], w: within(w), phi }
+    fn any(self, narrow: Narrow) -> bool {
+        vector!(_mm512_test_epi64_mask(narrow.0, narrow.0)) != 0
+    }
+
+    #[inline(always)]
+    fn bits(self, mask: Mask) -> u8 {
+        mask.0
     }
 }
 
 impl words::Narrow<Avx512> for Narrow {
-    #[inline(always)]
-    fn store(self, lane: &mut Lane) {
-        vector!(_mm256_storeu_si256(lane.as_mut_ptr().cast(), _mm512_cvtepi64_epi32(self.0)));
-    }
-
     #[inline(always)]
     fn factor(self) -> Factor {
         Factor(self.0)
@@ -236,11 +248,6 @@ impl words::Narrow<Avx512> for Narrow {
     fn above(self, other: Narrow) -> Mask {
         Mask(vector!(_mm512_cmpgt_epi64_mask(self.0, other.0)))
     }
-
-    #[inline(always)]
-    fn any(self) -> bool {
-        vector!(_mm512_test_epi64_mask(self.0, self.0)) != 0
-    }
 }
 
 impl words::Mask<Avx512> for Mask {
@@ -257,11 +264,6 @@ impl words::Mask<Avx512> for Mask {
     #[inline(always)]
     fn pick(self, yes: Narrow, no: Narrow) -> Narrow {
         Narrow(vector!(_mm512_mask_blend_epi64(self.0, no.0, yes.0)))
-    }
-
-    #[inline(always)]
-    fn bits(self) -> u8 {
-        self.0
     }
 }
 

@@ -18,6 +18,8 @@ mod island;
 mod kernel;
 mod mobility;
 mod mover;
+#[cfg(any(test, plain))]
+mod plain;
 mod prepare;
 mod repose;
 mod rows;
@@ -25,13 +27,13 @@ mod scales;
 mod show;
 mod squeeze;
 mod strike;
-#[cfg(target_arch = "x86_64")]
+#[cfg(any(test, plain, target_arch = "x86_64"))]
 mod sweep;
 #[cfg(test)]
 mod tests;
 mod timeline;
 mod turning;
-#[cfg(target_arch = "x86_64")]
+#[cfg(any(test, plain, target_arch = "x86_64"))]
 mod words;
 
 use crate::body::{Bodies, Colliders};

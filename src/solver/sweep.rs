@@ -6,12 +6,33 @@
 use super::mover::Mover;
 use super::rows::{BLOW, Block, IMPULSE_MAX, LOAD, Lane, PUSHES, Row};
 use super::scales::{SLOP, Scales};
-use super::words::{Eight, Factor, Mask, Narrow, Wide, Words};
+use super::words::{Eight, Factor, Mask, Narrow, Reach, Wide, Words};
+
+/// What the rows of contacts read of their two bodies.
+#[derive(Clone, Copy)]
+pub(super) struct Look<K: Words> {
+    /// The difference of their velocities.
+    pub(super) v: [K::Factor; 2],
+    pub(super) w: [K::Factor; 2],
+    pub(super) phi: [K::Factor; 2],
+    /// How far each has gone, x and y.
+    pub(super) ways: [[K::Factor; 2]; 2],
+}
+
+/// What solving came to.
+pub(super) struct Answer<K: Words> {
+    /// By how much the impulses of friction and of both points change.
+    pub(super) change: [K::Narrow; 3],
+    /// Whether it took no blow.
+    pub(super) mild: K::Mask,
+    /// Whether a row pushed.
+    pub(super) pushes: K::Mask,
+}
 
 /// Solves each of the contacts whose bits are set once, with or without their friction. By contact, from the lowest bit: whether it
 /// took a blow, and whether a row pushed.
 #[inline(always)]
-pub(super) fn sweep<K: Words, const BIASED: bool, const FRICTION: bool>(
+pub(super) fn sweep<K: Reach, const BIASED: bool, const FRICTION: bool>(
     k: K,
     block: &mut Block,
     lanes: u8,
@@ -19,19 +40,40 @@ pub(super) fn sweep<K: Words, const BIASED: bool, const FRICTION: bool>(
     scales: &Scales,
 ) -> (u8, u8) {
     let chosen = k.chosen(&block.bodies, lanes);
-    let a = k.gather(movers, &block.bodies[0]);
-    let b = k.gather(movers, &block.bodies[1]);
-    let [nx, ny] = [k.factor(&block.normal[0]), k.factor(&block.normal[1])];
+    let [a, b] = [k.gather(movers, &block.bodies[0]), k.gather(movers, &block.bodies[1])];
+    let ways = [k.ways(movers, &block.bodies[0]), k.ways(movers, &block.bodies[1])];
+    let (v, w) = speeds(k, &a, &b);
+    let look = Look { v, w, phi: [a.phi.low(), b.phi.low()], ways };
+    let Answer { change, mild, pushes } = solve::<K, BIASED, FRICTION>(k, block, chosen, look, scales);
+    if k.any(change[0].or(change[1]).or(change[2])) {
+        let [a, b] = give(k, block, [a, b], change.map(Narrow::factor));
+        k.scatter(a, movers, &block.bodies[0]);
+        k.scatter(b, movers, &block.bodies[1]);
+    }
+    (!k.bits(mild), k.bits(pushes))
+}
 
-    let phi = [a.phi.low(), b.phi.low()];
-    let da = k.ways(movers, &block.bodies[0]);
-    let db = k.ways(movers, &block.bodies[1]);
+/// Velocities as rows read them: the difference of two, and how both turn.
+#[inline(always)]
+pub(super) fn speeds<K: Words>(k: K, a: &Eight<K>, b: &Eight<K>) -> ([K::Factor; 2], [K::Factor; 2]) {
+    let v = [a.v[0].sub(b.v[0]).round::<28>(k), a.v[1].sub(b.v[1]).round::<28>(k)];
+    (v, [a.w.round::<28>(k), b.w.round::<28>(k)])
+}
+
+/// Solves the chosen contacts once, with or without their friction.
+#[inline(always)]
+pub(super) fn solve<K: Words, const BIASED: bool, const FRICTION: bool>(
+    k: K,
+    block: &mut Block,
+    chosen: K::Mask,
+    Look { v, w, phi, ways: [da, db] }: Look<K>,
+    scales: &Scales,
+) -> Answer<K> {
+    let [nx, ny] = [k.factor(&block.normal[0]), k.factor(&block.normal[1])];
     // A difference of two ways may have 33 bits.
     let apart = nx.mul(da[0]).sub(nx.mul(db[0])).add(ny.mul(da[1])).sub(ny.mul(db[1]));
     let separation = [separation(k, block, 0, apart, phi), separation(k, block, 1, apart, phi)];
 
-    let v = [a.v[0].sub(b.v[0]).round::<28>(k), a.v[1].sub(b.v[1]).round::<28>(k)];
-    let w = [a.w.round::<28>(k), b.w.round::<28>(k)];
     let along = nx.mul(v[0]).add(ny.mul(v[1]));
     let across = nx.mul(v[1]).sub(ny.mul(v[0]));
     let load = [k.load(&block.points[0].impulse), k.load(&block.points[1].impulse)];
@@ -52,15 +94,11 @@ pub(super) fn sweep<K: Words, const BIASED: bool, const FRICTION: bool>(
     let change_second = second.sub(load[1]);
     keep(k, block, 0, first, chosen);
     keep(k, block, 1, second, chosen);
-
-    if slide.or(change_first).or(change_second).any() {
-        let change = [slide.factor(), change_first.factor(), change_second.factor()];
-        let [a, b] = give(k, block, [a, b], change);
-        k.scatter(a, movers, &block.bodies[0]);
-        k.scatter(b, movers, &block.bodies[1]);
+    Answer {
+        change: [slide, change_first, change_second],
+        mild: k.narrow(BLOW as i32).above(change_first.abs().max(change_second.abs())),
+        pushes: pushes_first.or(pushes_second).and(chosen),
     }
-    let mild = k.narrow(BLOW as i32).above(change_first.abs().max(change_second.abs()));
-    (!mild.bits(), pushes_first.or(pushes_second).and(chosen).bits())
 }
 
 /// By how much the impulse of friction changes, which is kept.
@@ -81,13 +119,13 @@ fn slide<K: Words>(
     let slip = across.add(turning(k, &block.friction, w)).round_limited(k);
     let impulse = before.sub(slip).min(limit).max(k.narrow(0).sub(limit));
     let impulse = chosen.pick(impulse, before);
-    impulse.store(&mut block.friction.impulse);
+    k.store(impulse, &mut block.friction.impulse);
     impulse.sub(before)
 }
 
 /// What the last tick's impulses do to the bodies.
 #[inline(always)]
-pub(super) fn warm_start<K: Words>(k: K, block: &Block, movers: &mut [Mover]) {
+pub(super) fn warm_start<K: Reach>(k: K, block: &Block, movers: &mut [Mover]) {
     let chosen = k.chosen(&block.bodies, u8::MAX);
     let a = k.gather(movers, &block.bodies[0]);
     let b = k.gather(movers, &block.bodies[1]);
@@ -101,9 +139,9 @@ pub(super) fn warm_start<K: Words>(k: K, block: &Block, movers: &mut [Mover]) {
 /// A point's impulse.
 #[inline(always)]
 fn keep<K: Words>(k: K, block: &mut Block, at: usize, impulse: K::Narrow, chosen: K::Mask) {
-    impulse.store(&mut block.points[at].impulse);
+    k.store(impulse, &mut block.points[at].impulse);
     let peak = k.load(&block.peak[at]);
-    chosen.pick(peak.max(impulse), peak).store(&mut block.peak[at]);
+    k.store(chosen.pick(peak.max(impulse), peak), &mut block.peak[at]);
 }
 
 /// How far a point is from touching, rounded, then counted from the separation at the tick's beginning, which is whole.
@@ -161,7 +199,12 @@ fn answer<K: Words, const BIASED: bool>(
 
 /// `Block::give`: changes of the impulses of friction and of both points, to the bodies.
 #[inline(always)]
-fn give<K: Words>(k: K, block: &Block, [mut a, mut b]: [Eight<K>; 2], change: [K::Factor; 3]) -> [Eight<K>; 2] {
+pub(super) fn give<K: Words>(
+    k: K,
+    block: &Block,
+    [mut a, mut b]: [Eight<K>; 2],
+    change: [K::Factor; 3],
+) -> [Eight<K>; 2] {
     let (f, [p, q]) = (&block.friction, &block.points);
     let [slide, first, second] = change;
     let push = k.factor(&p.line).mul(first).add(k.factor(&q.line).mul(second)).round::<28>(k);

@@ -1,7 +1,8 @@
 //! The words in which a sweep over eight contacts side by side is written, whatever instructions a processor has for them.
 //!
-//! A set of words is a type whose values exist only where its instructions do. What a word means is said here once; the
-//! definition, of which all sets give the bits, is [`Block::solve`](super::rows::Block::solve).
+//! A set of words is a type whose values exist only where its instructions do; for plain arrays (`plain.rs`) there are words
+//! of two lanes, which a loop says four times. What a word means is said here once; the definition, of which all sets give the
+//! bits, is [`Block::solve`](super::rows::Block::solve).
 
 use super::mover::Mover;
 use super::rows::{LANES, Lane};
@@ -20,12 +21,19 @@ pub(super) trait Words: Copy {
     fn narrow(self, value: i32) -> Self::Narrow;
     fn wide(self, value: i64) -> Self::Wide;
     fn load(self, lane: &Lane) -> Self::Narrow;
+    fn store(self, narrow: Self::Narrow, lane: &mut Lane);
 
     #[inline(always)]
     fn factor(self, lane: &Lane) -> Self::Factor {
         self.load(lane).factor()
     }
 
+    /// Velocities limited to ±2⁵⁷: [`held`](crate::num::lane::held).
+    fn held(self, eight: Eight<Self>) -> Eight<Self>;
+}
+
+/// Words of all eight lanes: they reach bodies in any order, and say yes or no.
+pub(super) trait Reach: Words {
     /// Those of eight contacts that are to be solved: their bits are set, and their bodies are two.
     fn chosen(self, bodies: &[[u32; LANES]; 2], lanes: u8) -> Self::Mask;
 
@@ -38,8 +46,11 @@ pub(super) trait Words: Copy {
     /// How far those at these places have gone, x and y.
     fn ways(self, movers: &[Mover], places: &[u32; LANES]) -> [Self::Factor; 2];
 
-    /// Velocities limited to ±2⁵⁷: [`held`](crate::num::lane::held).
-    fn held(self, eight: Eight<Self>) -> Eight<Self>;
+    /// Whether any bit is set.
+    fn any(self, narrow: Self::Narrow) -> bool;
+
+    /// By lane, from the lowest bit.
+    fn bits(self, mask: Self::Mask) -> u8;
 }
 
 /// Eight movers.
@@ -51,7 +62,6 @@ pub(super) struct Eight<K: Words> {
 }
 
 pub(super) trait Narrow<K: Words>: Copy {
-    fn store(self, lane: &mut Lane);
     fn factor(self) -> K::Factor;
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
@@ -63,8 +73,6 @@ pub(super) trait Narrow<K: Words>: Copy {
     fn or(self, other: Self) -> Self;
     /// Where it is greater.
     fn above(self, other: Self) -> K::Mask;
-    /// Whether any bit is set.
-    fn any(self) -> bool;
 }
 
 pub(super) trait Factor<K: Words>: Copy {
@@ -103,6 +111,4 @@ pub(super) trait Mask<K: Words>: Copy {
     fn or(self, other: Self) -> Self;
     /// Where it is set `yes`, else `no`.
     fn pick(self, yes: K::Narrow, no: K::Narrow) -> K::Narrow;
-    /// By lane, from the lowest bit.
-    fn bits(self) -> u8;
 }
