@@ -1,6 +1,6 @@
 //! The kernels of the rows, and those of their preparation, against plain arithmetic of 128 bits: at ties, and at the ends of
 //! what they take.
-#![allow(clippy::arithmetic_side_effects, reason = "tests, not the engine")]
+#![allow(clippy::arithmetic_side_effects, clippy::disallowed_types, reason = "tests, not the engine")]
 
 use super::{Length, flat, lane, mul};
 use crate::geom::{Rot, Vec2};

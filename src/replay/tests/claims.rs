@@ -133,8 +133,7 @@ impl Seek for Counted {
 fn comparing_reads_a_small_part_of_what_agrees() {
     let options = Recording { keyframe_seconds: 1, parts_ticks: 7, ..Recording::default() };
     let mut dice = Dice(9);
-    let mut games =
-        [(); 2].map(|()| Recorder::with(lively(), Cursor::new(Vec::new()), options).expect("memory"));
+    let mut games = [(); 2].map(|()| Recorder::with(lively(), Cursor::new(Vec::new()), options).expect("memory"));
     let fault = 1100 + dice.below(50) as u64;
     for tick in 1..=1200 {
         if tick == fault {
