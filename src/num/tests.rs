@@ -1,8 +1,9 @@
 //! The kernels of the rows, and those of their preparation, against plain arithmetic of 128 bits: at ties, and at the ends of
 //! what they take.
-#![allow(clippy::arithmetic_side_effects, reason = "tests, not the engine")]
+#![allow(clippy::arithmetic_side_effects, clippy::disallowed_types, reason = "tests, not the engine")]
 
-use super::{flat, lane, mul};
+use super::{Length, flat, lane, mul};
+use crate::geom::{Rot, Vec2};
 
 /// `value / 2^shift` to nearest, ties away from zero.
 fn nearest(value: i128, shift: u32) -> i128 {
@@ -134,5 +135,16 @@ fn lanes_of_the_preparation_give_the_bits_of_what_they_stand_for() {
     let divisors = samples((1 << 31) - 1).into_iter().filter(|&v| v >= 1 << 28);
     for v in divisors {
         assert_eq!(i128::from(flat::inverse(v)), super::div(1 << 56, v.into()), "{v}");
+    }
+}
+
+#[test]
+fn what_is_drawn_has_each_component_by_itself() {
+    for (x, y) in [(0.5, -2.0), (-1e9, 2f64.powi(-32)), (0.0, 3.25)] {
+        assert_eq!(Vec2::<Length>::from_f64(x, y).expect("in range").to_f64(), (x, y));
+    }
+    for (cos, sin) in [(0.5, -0.75), (-1.0, 0.0), (0.0, 1.0), (2f64.powi(-30), -(2f64.powi(-30)))] {
+        let bits = |part: f64| (part * f64::from(1 << 30)) as i32;
+        assert_eq!(Rot { cos: bits(cos), sin: bits(sin) }.to_f64(), (cos, sin));
     }
 }

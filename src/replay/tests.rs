@@ -1,6 +1,7 @@
 //! Faults in memory: each is put where it can be, and must be named.
 #![allow(clippy::arithmetic_side_effects, clippy::disallowed_types, reason = "tests, not the engine")]
 
+mod claims;
 mod faults;
 mod goldens;
 mod recordings;

@@ -11,6 +11,8 @@
 //! | κ | Q48 | 120² + 1 < 2¹⁴: a body's gyration is at least 1/120 of its reach |
 
 mod contact;
+#[cfg(test)]
+mod tests;
 
 use super::mobility::Mobility;
 use crate::geom::Vec2;

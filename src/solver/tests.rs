@@ -1,6 +1,8 @@
 //! Lanes side by side against the definition, to the bit.
 #![allow(clippy::arithmetic_side_effects, reason = "tests, not the engine")]
 
+mod astray;
+
 use super::kernel::Kernel;
 use super::mover::Mover;
 use super::rows::{Block, LANES, Lane, Row};

@@ -339,6 +339,15 @@ fn evidence_with(world: &World, when: When, fault: impl FnMut(&mut World) -> Don
     (evidence, done)
 }
 
+/// Evidence of the next tick of a world in which something happens when a stage has ended, before anybody looks.
+pub(super) fn evidence_of(world: &World, stage: Stage, fault: fn(&mut World)) -> Evidence {
+    let happens = |world: &mut World| {
+        fault(world);
+        None
+    };
+    evidence_with(world, When::End(stage), happens).0
+}
+
 /// The words for what a row is of.
 fn object(world: &World, kind: &Kind, finding: &Finding, row: usize) {
     let words = match kind.table {

@@ -11,6 +11,7 @@ use crate::solver::kernel::Kernel;
 use crate::solver::rows::LANES;
 
 /// A contact to be written.
+#[derive(Clone)]
 struct Given {
     pair: Pair,
     places: [u32; 2],
@@ -147,5 +148,49 @@ fn the_inverse_is_the_quotient() {
     for quotient in (1i64 << 25..1 << 28).step_by(9_973) {
         let v = (1 << 57) / (2 * quotient + 1);
         (v - 1..=v + 1).filter(|&v| v >> 28 != 0 && v >> 31 == 0).for_each(same);
+    }
+}
+
+/// One number alone that lanes do not hold, or any of those of its kind together, and the contact is left over; and else not.
+#[test]
+fn what_lanes_have_no_numbers_for_is_left_over() {
+    let (mut dice, scales) = (Dice(5), Scales::new(60, 10, 0));
+    let left = |kernel: Kernel, all: &[Given; LANES]| {
+        let (mut joints, mut block) = (Joints::default(), Block::default());
+        for (i, Given { pair, places, between, mobility: [a, b], old }) in all.iter().enumerate() {
+            let ids = [0, 1].map(|at: usize| pair.manifold.points[at].id);
+            let old = Contact { count: 2, ids, ..*old };
+            joints.seat(i, pair, *places, *between, [a, b], &old);
+        }
+        kernel.prepare(&joints, &mut block, scales.shift)
+    };
+    // They do not turn, or arms as long as these are would be too much for what turns them.
+    let mut plain = || loop {
+        let given = given(&mut dice);
+        let alike = [(); LANES].map(|()| given.clone());
+        let turns = given.mobility.iter().any(|mobility| mobility.tau != 0);
+        if given.pair.manifold.count == 2 && !turns && left(Kernel::Definition, &alike) == 0 {
+            return given;
+        }
+    };
+    let all = [(); LANES].map(|()| plain());
+    type Change = fn(&mut Given, usize, i64);
+    // Each with how many there are, and the first power of two beyond.
+    let kinds: [(Change, usize, u32); 5] = [
+        (|given, at, by| given.pair.manifold.points[at / 2].arm[at % 2] = by, 4, 60),
+        (|given, at, by| given.between[at] = by, 2, 60),
+        (|given, at, by| given.pair.manifold.points[at].separation = by, 2, 47),
+        (|given, at, by| *given.old.normal.get_mut(at).unwrap_or(&mut given.old.tangent) = by, 3, 58),
+        (|given, _, by| given.pair.friction = by, 1, 55),
+    ];
+    for kernel in Kernel::all() {
+        assert_eq!(left(kernel, &all), 0, "{kernel:?}");
+        for (kind, (change, count, bits)) in kinds.into_iter().enumerate() {
+            for some in 1..1u32 << count {
+                let mut all = all.clone();
+                (0..count).filter(|at| some >> at & 1 != 0).for_each(|at| change(&mut all[3], at, 1 << bits));
+                assert_eq!(left(kernel, &all), 1 << 3, "{kernel:?}, {kind}, {some:b}");
+            }
+        }
     }
 }
