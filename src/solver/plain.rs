@@ -111,7 +111,7 @@ fn give(block: &Block, [a, b]: &mut [Columns; 2], [slide, first, second]: &[Lane
         b.set(plain, speed_b);
     }
     // As in `held`, nearly never.
-    if over as u64 >= 2 * lane::HELD as u64 {
+    if over as u64 >= (lane::HELD as u64).wrapping_mul(2) {
         a.hold();
         b.hold();
     }
