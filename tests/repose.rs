@@ -7,9 +7,9 @@ mod solid;
 #[path = "common/weather.rs"]
 mod weather;
 
-use common::{Rng, acc, at, disc, newton_seconds, newtons, rectangle, run, world};
+use common::{Rng, acc, at, disc, newton_seconds, newtons, position, rectangle, run, world};
 use solid::{add, fixed, moving, solid};
-use tamias2d::{BodyId, BodyKind, Command, Commands, Vec2, Velocity, World, WorldDef};
+use tamias2d::{Angle, BodyId, BodyKind, Command, Commands, Vec2, Velocity, World, WorldDef};
 use weather::Weather;
 
 #[global_allocator]
@@ -237,6 +237,45 @@ fn commands_elsewhere_and_coarse_ticks_leave_alone_what_reposes() {
         world.apply(command.clone()).expect("accepted");
         watched.apply(command).expect("accepted");
         step_both(&mut world, &mut watched, || "a player far away".into());
+    }
+}
+
+/// Where a body at the end of a range rests nothing is limited, whether it is computed or known.
+#[test]
+fn what_reposes_at_the_end_of_a_range_is_not_limited() {
+    for far in [false, true] {
+        let mut world = world(0.0, -9.81);
+        let x = if far { 1e9 } else { 0.0 };
+        add(&mut world, fixed(x, -1.0, rectangle(1.0, 2.0)));
+        let body = add(&mut world, solid(x, 0.5, rectangle(1.0, 1.0)));
+        run(&mut world, 300);
+        if !far {
+            world.set_angle(body, Angle::from_bits(i64::MAX)).expect("accepted");
+        }
+        run(&mut world, 100);
+        world.apply(Command::ClearStatus).expect("accepted");
+        let mut watched = world.clone();
+        for tick in 0..3 {
+            step_both(&mut world, &mut watched, || format!("far {far}, tick {tick}"));
+        }
+        assert!(world.status().is_clear(), "{:?}", world.status());
+    }
+}
+
+/// What touches only each other is held by nothing, however little pushes it.
+#[test]
+fn what_nothing_holds_goes_on() {
+    for (rate, count, a) in [(60, 2, 8e-4), (240, 3, 3.3e-3), (1000, 2, 1.3e-2)] {
+        let mut world = World::new(&WorldDef { tick_rate: rate, ..WorldDef::default() }).expect("accepted");
+        let line =
+            (0..count).map(|place| add(&mut world, solid(f64::from(place) * 0.999_99, 0.0, rectangle(1.0, 1.0))));
+        let line: Vec<BodyId> = line.collect();
+        run(&mut world, u64::from(rate));
+        let (from, _) = position(&world, line[0]);
+        world.set_force(line[0], newtons(f64::from(count) * a, 0.0)).expect("accepted");
+        run(&mut world, u64::from(rate) * 10);
+        let way = position(&world, line[0]).0 - from;
+        assert!((way / (50.0 * a) - 1.0).abs() < 0.02, "{count} boxes at {rate} ticks/s went {way} m of {}", 50.0 * a);
     }
 }
 

@@ -273,7 +273,7 @@ pub fn tables(folder: &Path) -> String {
     if let Some(table) = file("peers_speed.csv") {
         page += "\n### Time\n\nProcessor time of the mean tick in the best round; in brackets that of the median round, and the \
                  median tick by the clock on the wall. Here a heap that has come to rest to the bit is not computed again: the pile of 1000 and the \
-                 stack rest before their windows begin, the pyramid of 820 (tick 248) and the pile of 4000 (tick 993) within theirs, the others do not.\n\n";
+                 stack rest before their windows begin, the pyramid of 820 (tick 262) and the pile of 4000 (tick 994) within theirs, the others do not.\n\n";
         page += &speed(&table);
     }
     if let Some(table) = file("peers_snapshots.csv") {

@@ -274,6 +274,8 @@ impl Solver {
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
         }
+        // What is found of where bodies end: of those in repose it does not count.
+        let mut ends = Vec::new();
         if movers.is_empty() {
             timeline.run([0, TICK], &stage, movers, faults);
         } else {
@@ -346,15 +348,16 @@ impl Solver {
                     movers.hit(places);
                 }
             }
-            movers.store(bodies, before, mobilities, scales, faults);
+            movers.store(bodies, before, mobilities, scales, &mut ends);
         }
-        timeline.flights.store(bodies, movers, scales, faults);
+        timeline.flights.store(bodies, movers, scales, &mut ends);
         for &pair in &timeline.met {
             touch.pairs[pair as usize].met = true;
         }
         repose.put_back(bodies);
         let lasting = drive.sources.is_empty();
-        self.settle(&mut touch.pairs, contacts, bodies, drive, lasting);
+        self.settle(&mut touch.pairs, contacts, bodies, drive, lasting, &mut ends);
+        faults.append(&mut ends);
         touch.join(&mut self.timeline.late, contacts);
     }
 

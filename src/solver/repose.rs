@@ -1,8 +1,8 @@
 //! Repose: islands that a tick leaves as they are.
 //!
 //! Rows leave some µm/s over, so nothing would ever come to rest exactly: a pile would tremble and creep, and cost what it costs
-//! when it moves. What hangs together by contacts, and of which no body went faster in a tick than that, or is left faster, ends the
-//! tick as it began it, but without velocity; its contacts keep their impulses as well. From then on each tick of it is the same one,
+//! when it moves. What hangs together by contacts, touches something that stands, and of which no body went faster in a tick than
+//! that, or is left faster, ends the tick as it began it, but without velocity; its contacts keep their impulses as well. From then on each tick of it is the same one,
 //! and what is known need not be computed: as long as it lies among the same neighbours under the same forces, it gets no rows.
 //!
 //! The first is law. The second is a memory of the law's results: it may be empty at any time, and makes no difference.
@@ -18,7 +18,7 @@ use super::scales::Scales;
 use crate::body::{Bodies, BodyKind};
 use crate::contact::{Contact, Contacts, NEW, Pair};
 use crate::geom::Vec2;
-use crate::motion::Drive;
+use crate::motion::{Drive, Fault};
 use crate::num::{Angle, AngularVelocity, Length};
 
 /// How fast a body in repose went in the tick, and how fast it is when rows are done with it, at most: 16·2⁻²⁰ m/s, Q20. So what
@@ -59,7 +59,9 @@ struct Calm {
     leader: Vec<u32>,
     /// Whether it does not repose; of one that stands for an island, whether that does not.
     up: Vec<bool>,
-    /// Of one that stands for an island: whether the next tick may be another one; how many pairs it has.
+    /// Of one that stands for an island: whether it touches what contacts do not move, and what stands; whether the next tick may be
+    /// another one; how many pairs it has.
+    held: Vec<bool>,
     fresh: Vec<bool>,
     pairs: Vec<u32>,
 }
@@ -185,11 +187,13 @@ impl Calm {
 
     /// Each body by itself; whether any is calm.
     fn find(&mut self, movers: &Movers, before: &[[i64; 6]], free: &[bool], bodies: &Bodies, scales: &Scales) -> bool {
-        let Calm { moves, leader, up, fresh, pairs } = self;
+        let Calm { moves, leader, up, held, fresh, pairs } = self;
         moves.clear();
         leader.clear();
         leader.extend(0..free.len() as u32);
         up.clear();
+        held.clear();
+        held.resize(free.len(), false);
         fresh.clear();
         fresh.resize(free.len(), false);
         pairs.clear();
@@ -246,6 +250,7 @@ impl Calm {
 
 impl Solver {
     /// Finds the islands that end the tick as they began it, and leaves them so. `lasting`: whether it is to be remembered.
+    /// `ends`: of which bodies it was noted that a bound is where they would end; of these, that is nothing.
     pub(super) fn settle(
         &mut self,
         pairs: &mut [Pair],
@@ -253,6 +258,7 @@ impl Solver {
         bodies: &mut Bodies,
         drive: &Drive,
         lasting: bool,
+        ends: &mut Vec<Fault>,
     ) {
         let mut calm = core::mem::take(&mut self.repose.calm);
         if calm.find(&self.movers, &self.before, &self.free, bodies, &self.scales)
@@ -274,6 +280,7 @@ impl Solver {
                     pair.stays = pair.row != NEW;
                 }
             }
+            ends.retain(|fault| calm.island(self.movers.place_of(fault.slot as u32)).is_none());
             self.repose.remember(&mut calm, &self.movers, bodies, drive);
         }
         self.repose.calm = calm;
@@ -290,11 +297,23 @@ impl Solver {
             return false;
         }
         for pair in pairs.iter().filter(|pair| !pair.sensor && !pair.stays) {
-            for place in pair.bodies.map(|slot| self.movers.place_of(slot)) {
-                if let Some(island) = calm.island(place) {
-                    calm.up[island] = !is_same(&self.outcome(pair), pair, contacts);
-                }
+            let places = pair.bodies.map(|slot| self.movers.place_of(slot) as usize);
+            let islands = places.map(|place| calm.island(place as u32));
+            if islands == [None; 2] {
+                continue;
             }
+            let contact = self.outcome(pair);
+            let same = is_same(&contact, pair, contacts);
+            let still = |place: usize| !calm.moves[place] && self.before[place][3..] == [0; 3];
+            let held = contact.touching && (still(places[0]) || still(places[1]));
+            for island in islands.into_iter().flatten() {
+                calm.up[island] |= !same;
+                calm.held[island] |= held;
+            }
+        }
+        for (up, held) in calm.up.iter_mut().zip(&calm.held) {
+            // Of one that stands for no island nobody asks any more.
+            *up |= !held;
         }
         true
     }

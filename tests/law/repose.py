@@ -5,8 +5,8 @@ from pairs import lasts, outcome
 LEAST = 16
 
 
-def settle(world, pairs, movers):
-    """Finds the islands that end the tick as they began it, and leaves them so."""
+def settle(world, pairs, movers, faults, ends):
+    """Finds the islands that end the tick as they began it, and leaves them so; of these, faults from `ends` on are none."""
     state, past, moving = world.state, movers.past, {}
     for place, mover in enumerate(movers.list):
         if place and not movers.is_free(place) and not world.is_asleep(mover.slot):
@@ -16,7 +16,7 @@ def settle(world, pairs, movers):
                 stays = all(abs(way) <= LEAST * movers.scales.substeps for way in mover.sum)
             moving[place] = stays and all(abs(v) <= LEAST << 28 for v in mover.v)
     up = {place for place, calm in moving.items() if not calm}
-    edges = {}
+    edges, held = {}, []
     for pair in pairs:
         if pair.sensor:
             continue
@@ -28,16 +28,20 @@ def settle(world, pairs, movers):
         )
         if pair.met or drives or not same(pair):
             up |= set(own)
+        stands = len(own) == 1 and all(
+            place in moving or not place or not any([*past[slot].v, past[slot].omega])
+            for place, slot in zip(places, pair.bodies)
+        )
+        if stands and outcome(pair).touching:
+            held += own
         if pair.contact and len(own) == 2:
             edges.setdefault(own[0], []).append(own[1])
             edges.setdefault(own[1], []).append(own[0])
-    open_ = list(up)
-    while open_:
-        for other in edges.get(open_.pop(), []):
-            if other not in up:
-                up.add(other)
-                open_.append(other)
-    calm = {movers.list[place].slot for place in moving if place not in up}
+    spread(up, edges)
+    # What touches nothing that stands is held by nothing.
+    held = set(held)
+    spread(held, edges)
+    calm = {movers.list[place].slot for place in moving if place in held - up}
     for slot in calm:
         world.seen["in repose"] += any((state.vx[slot], state.vy[slot], state.omega[slot]))
         (state.x[slot], state.y[slot]), state.angle[slot] = past[slot].x, past[slot].angle
@@ -45,8 +49,19 @@ def settle(world, pairs, movers):
     for mover in movers.list[1:]:
         if mover.slot in calm:
             mover.d[:] = [0, 0, 0]
+    faults[ends:] = [fault for fault in faults[ends:] if fault[0] not in calm]
     for pair in pairs:
         pair.stays = bool(not pair.sensor and pair.contact and calm & set(pair.bodies))
+
+
+def spread(places, edges):
+    """Adds what hangs together with them."""
+    open_ = list(places)
+    while open_:
+        for other in edges.get(open_.pop(), []):
+            if other not in places:
+                places.add(other)
+                open_.append(other)
 
 
 def same(pair):

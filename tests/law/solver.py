@@ -31,15 +31,17 @@ def step(world, faults):
         timeline.engage(pair)
     if held:
         substeps(world, held, islands, movers, timeline)
-        movers.store(faults)
     else:
         timeline.run(0, TICK)
+    ends = len(faults)
+    if held:
+        movers.store(faults)
     timeline.store()
     for colliders, bodies in timeline.late:
         pair = Pair(world, colliders, bodies, narrow.manifold([0, 0], []), None)
         pair.met = True
         pairs.append(pair)
-    repose.settle(world, pairs, movers)
+    repose.settle(world, pairs, movers, faults, ends)
     return sorted(pairs, key=lambda pair: pair.colliders), movers
 
 
