@@ -4,10 +4,10 @@
 //! asleep; without it, the default, none of this costs anything or changes a bit. It is off because it changes motion: what
 //! drifts more slowly than the threshold is stopped.
 //!
-//! Without it, too, what contacts hold comes to rest, to the bit: an island that lies on something, of which no body was faster than 15 µm/s in a tick, ends
-//! that tick as it began it, is left so for good, and is hardly computed any more until something is new to it. That stops what
-//! forces would make faster by less than that in a tick (times 2^k): 0.9 mm/s² at 60 ticks/s, 15 mm/s² at 1000, a disc at rest on a
-//! slope of 0.008° or 0.13°.
+//! Without it, too, what contacts hold comes to rest, to the bit: an island that lies on something, and of which no body was faster
+//! than 15 µm/s in a tick, ends that tick as it began it, is left so for good, and is hardly computed any more until something is
+//! new to it. That stops what forces would make faster by less than that in a tick (times 2^k): 0.9 mm/s² at 60 ticks/s, 15 mm/s² at
+//! 1000, a disc at rest on a slope of 0.008° or 0.12°.
 //!
 //! ```
 //! use tamias2d::{BodyDef, BodyKind, ColliderDef, Commands, Shape, Sleeping, Vec2, World, WorldDef};
