@@ -355,8 +355,7 @@ impl Solver {
             touch.pairs[pair as usize].met = true;
         }
         repose.put_back(bodies);
-        let lasting = drive.sources.is_empty();
-        self.settle(&mut touch.pairs, contacts, bodies, drive, lasting, &mut ends);
+        self.settle(&mut touch.pairs, contacts, bodies, drive, &mut ends);
         faults.append(&mut ends);
         touch.join(&mut self.timeline.late, contacts);
     }

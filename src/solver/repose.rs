@@ -249,17 +249,18 @@ impl Calm {
 }
 
 impl Solver {
-    /// Finds the islands that end the tick as they began it, and leaves them so. `lasting`: whether it is to be remembered.
-    /// `ends`: of which bodies it was noted that a bound is where they would end; of these, that is nothing.
+    /// Finds the islands that end the tick as they began it, and leaves them so. `ends`: bodies of which a bound was noted where they
+    /// would have ended; of these it is none.
     pub(super) fn settle(
         &mut self,
         pairs: &mut [Pair],
         contacts: &Contacts,
         bodies: &mut Bodies,
         drive: &Drive,
-        lasting: bool,
         ends: &mut Vec<Fault>,
     ) {
+        // What attracts pulls otherwise in each tick.
+        let lasting = drive.sources.is_empty();
         let mut calm = core::mem::take(&mut self.repose.calm);
         if calm.find(&self.movers, &self.before, &self.free, bodies, &self.scales)
             && self.find_calm(&mut calm, pairs, contacts)
