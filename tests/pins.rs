@@ -115,7 +115,7 @@ fn wild_worlds_are_as_they_were() {
 }
 
 #[test]
-#[ignore = "all worlds: minutes"]
+#[ignore = "all worlds, minutes: cargo test --release --test pins -- --ignored"]
 fn all_are_as_they_were() {
     if std::env::var_os("TAMIAS_PINS").is_some_and(|what| what == "write") {
         std::fs::write(path(), written()).expect("a file");

@@ -8,8 +8,8 @@ mod solid;
 mod weather;
 
 use common::{Rng, acc, at, disc, newton_seconds, newtons, position, rectangle, run, world};
-use solid::{add, fixed, moving, solid};
-use tamias2d::{Angle, BodyId, BodyKind, Command, Commands, Vec2, Velocity, World, WorldDef};
+use solid::{add, fixed, moving, solid, surface};
+use tamias2d::{Angle, BodyId, BodyKind, ColliderDef, Command, Commands, Vec2, Velocity, World, WorldDef};
 use weather::Weather;
 
 #[global_allocator]
@@ -259,6 +259,43 @@ fn what_reposes_at_the_end_of_a_range_is_not_limited() {
             step_both(&mut world, &mut watched, || format!("far {far}, tick {tick}"));
         }
         assert!(world.status().is_clear(), "{:?}", world.status());
+    }
+}
+
+/// Which forces on a box on ice, and which slopes under a disc at rest, are below what contacts hold, and which are not.
+#[test]
+fn what_hardly_pushes_moves_nothing_and_what_pushes_more_does() {
+    let rested = |rate: u32, collider: ColliderDef, friction: f64| {
+        let gravity = acc(0.0, -10.0);
+        let mut world = World::new(&WorldDef { gravity, tick_rate: rate, ..WorldDef::default() }).expect("accepted");
+        add(&mut world, fixed(0.0, -0.5, surface(rectangle(100.0, 1.0), friction, 0.0)));
+        let body = add(&mut world, solid(0.0, 0.5, surface(collider, friction, 0.0)));
+        run(&mut world, u64::from(rate) * 5);
+        (world, body)
+    };
+    let goes = |mut world: World, body: BodyId| {
+        let (from, _) = position(&world, body);
+        let second = u64::from(world.config().tick_rate);
+        run(&mut world, 2 * second);
+        position(&world, body).0 - from
+    };
+    for (rate, forces, degrees) in [
+        (60, [9e-4, 1e-3], [0.008f64, 0.01]),
+        (240, [3e-3, 4e-3], [0.03, 0.05]),
+        (1000, [1.4e-2, 1.6e-2], [0.12, 0.15]),
+    ] {
+        for (moves, (force, degrees)) in forces.into_iter().zip(degrees).enumerate() {
+            let (mut world, body) = rested(rate, rectangle(1.0, 1.0), 0.0);
+            world.set_force(body, newtons(force, 0.0)).expect("accepted");
+            let (way, free) = (goes(world, body), 2.0 * force * moves as f64);
+            assert!((way - free).abs() <= 0.01 * free, "{force} N at {rate} ticks/s: {way} m of {free}");
+
+            let (mut world, body) = rested(rate, disc(0.5), 0.5);
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            world.set_gravity(acc(10.0 * sin, -10.0 * cos)).expect("accepted");
+            let (way, free) = (goes(world, body), 2.0 * 10.0 * sin * 2.0 / 3.0 * moves as f64);
+            assert!((way - free).abs() <= 0.1 * free, "{degrees} degrees at {rate} ticks/s: {way} m of {free}");
+        }
     }
 }
 

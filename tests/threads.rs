@@ -105,7 +105,7 @@ fn goldens_and_random_scenes_are_the_same() {
 }
 
 #[test]
-#[ignore = "minutes; .ci/cross does it with one, two and eight"]
+#[ignore = "minutes; .ci/cross does it with one, two and eight: cargo test --release --features threads --test threads -- --ignored"]
 fn goldens_and_random_scenes_are_the_same_by_every_count() {
     play(true);
 }

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `manifold` | what comes out, and which of the three cases it is |
 //! | `polygon` | two polygons: separating axes, clipped edges |
-//! | `faces` | which edges of two polygons face each other, from before
+//! | `faces` | which edges of two polygons face each other, from before |
 //! | `circle` | a circle against a polygon or a circle |
 //! | `overlap` | whether outlines have a point in common |
 //! | `query` | points in outlines, nearest points, rays |

@@ -2,8 +2,9 @@
 //!
 //! Rows leave some µm/s over, so nothing would ever come to rest exactly: a pile would tremble and creep, and cost what it costs
 //! when it moves. What hangs together by contacts, touches something that stands, and of which no body went faster in a tick than
-//! that, or is left faster, ends the tick as it began it, but without velocity; its contacts keep their impulses as well. From then on each tick of it is the same one,
-//! and what is known need not be computed: as long as it lies among the same neighbours under the same forces, it gets no rows.
+//! that, or is left faster, ends the tick as it began it, but without velocity; its contacts keep their impulses as well. From then
+//! on each tick of it is the same one, and what is known need not be computed: as long as it lies among the same neighbours under
+//! the same forces, it gets no rows.
 //!
 //! The first is law. The second is a memory of the law's results: it may be empty at any time, and makes no difference.
 
@@ -22,8 +23,8 @@ use crate::motion::{Drive, Fault};
 use crate::num::{Angle, AngularVelocity, Length};
 
 /// How fast a body in repose went in the tick, and how fast it is when rows are done with it, at most: 16·2⁻²⁰ m/s, Q20. So what
-/// forces would add to it by 15 µm/s a tick stays: 0.9 mm/s² at 60 ticks/s, 15 mm/s² at 1000. With 4, one of
-/// 4000 boxes kept all of a settled pile from it for four seconds.
+/// forces would add to it by 15 µm/s a tick stays: 0.9 mm/s² at 60 ticks/s, 15 mm/s² at 1000. With 4, one of 4000 boxes kept all of
+/// a settled pile from it for four seconds.
 const LEAST: u32 = 16;
 
 /// As a number of pairs: more than are ever found.

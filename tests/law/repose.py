@@ -22,17 +22,13 @@ def settle(world, pairs, movers, faults, ends):
             continue
         places = [movers.place_of(slot) for slot in pair.bodies]
         own = [place for place in places if place in moving]
-        drives = pair.contact and any(
+        moved = any(
             place and place not in moving and any([*past[slot].v, past[slot].omega])
             for place, slot in zip(places, pair.bodies)
         )
-        if pair.met or drives or not same(pair):
+        if pair.met or pair.contact and moved or not same(pair):
             up |= set(own)
-        stands = len(own) == 1 and all(
-            place in moving or not place or not any([*past[slot].v, past[slot].omega])
-            for place, slot in zip(places, pair.bodies)
-        )
-        if stands and outcome(pair).touching:
+        if len(own) == 1 and not moved and outcome(pair).touching:
             held += own
         if pair.contact and len(own) == 2:
             edges.setdefault(own[0], []).append(own[1])

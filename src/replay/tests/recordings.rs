@@ -187,7 +187,10 @@ fn segments_verify_what_the_whole_does() {
 
 /// Ten minutes of play with 100 bodies, and a fault somewhere in it.
 #[test]
-#[cfg_attr(debug_assertions, ignore = "takes minutes where nothing is optimised")]
+#[cfg_attr(
+    debug_assertions,
+    ignore = "takes minutes where nothing is optimised: cargo test --release --lib a_fault_in_ten_minutes"
+)]
 fn a_fault_in_ten_minutes_is_found_in_seconds() {
     let mut dice = Dice(5);
     for _ in 0..2 {
