@@ -1,8 +1,8 @@
-//! Long runs beside twins: taken back, read from saves, recorded and played, moved, turned. No bit differs, or the first tick and field
-//! that do are named.
+//! Long runs beside twins: taken back, read from saves, by several threads (with that feature), recorded and played, moved, turned. No
+//! bit differs, or the first tick and field that do are named.
 //!
-//! The long ones: `cargo test --release --test soak -- --ignored --nocapture`. What they print at the end, a digest of all final
-//! states, is the same in every build: with other lanes, on other machines.
+//! The long ones: `.ci/soak`, which compares what they print, hashes on the way and a digest of all final states, between
+//! builds; or one build's by `cargo test --release --features threads --test soak -- --ignored --nocapture`.
 #![allow(clippy::disallowed_types, clippy::arithmetic_side_effects, reason = "tests, not the engine")]
 
 mod common;
@@ -17,7 +17,7 @@ use common::position;
 use std::io::Cursor;
 use std::time::Instant;
 use tamias2d::replay::{Player, Recorder, Recording, Segment};
-use tamias2d::{Command, Commands, Rollback, Vec2, Velocity, World};
+use tamias2d::{Command, Commands, Rollback, Threads, Vec2, Velocity, World};
 use weather::{View, Weather};
 
 /// So far a rollback goes.
@@ -39,10 +39,20 @@ fn give(world: &mut World, commands: &[Command]) {
     }
 }
 
-/// A world that goes on from a save of it, anew every some ticks, and one that is taken back.
+/// Two threads that cut up even the shortest loops; without the feature, the one that calls.
+fn threads() -> Threads {
+    #[cfg(feature = "threads")]
+    return Threads::eager(2).expect("they start");
+    #[cfg(not(feature = "threads"))]
+    Threads::default()
+}
+
+/// A world that goes on from a save of it, anew every some ticks, one that is taken back, and one that threads step.
 struct Twins {
     loaded: World,
     rolled: World,
+    shared: World,
+    threads: Threads,
     ring: Rollback,
     /// The commands of the last ticks, the latest last.
     past: Vec<Vec<Command>>,
@@ -50,9 +60,10 @@ struct Twins {
 }
 
 impl Twins {
-    fn new(world: &World, every: u64) -> Twins {
-        let ring = Rollback::new(DEPTH as u32 + 1);
-        Twins { loaded: world.clone(), rolled: world.clone(), ring, past: Vec::new(), every }
+    fn new(world: &World, threads: &Threads, every: u64) -> Twins {
+        let (ring, threads) = (Rollback::new(DEPTH as u32 + 1), threads.clone());
+        let [loaded, rolled, shared] = [world, world, world].map(World::clone);
+        Twins { loaded, rolled, shared, threads, ring, past: Vec::new(), every }
     }
 
     /// The tick that the world has made; `deep` says how far back the way goes this time.
@@ -60,6 +71,13 @@ impl Twins {
         give(&mut self.loaded, &commands);
         self.loaded.step();
         same("read from a save", world, &self.loaded)?;
+        give(&mut self.shared, &commands);
+        // Not in every tick: on busy cores threads wait for each other, milliseconds a tick.
+        match world.tick() % 4 {
+            0 => self.shared.step_on(&self.threads),
+            _ => self.shared.step(),
+        }
+        same("by threads", world, &self.shared)?;
         self.past.push(commands);
         if self.past.len() as u64 > DEPTH {
             self.past.remove(0);
@@ -82,13 +100,13 @@ impl Twins {
 }
 
 /// A room by its seed for some ticks, with all twins. The hash at the end.
-fn room(seed: u64, ticks: u64) -> Result<u64, String> {
+fn room(seed: u64, ticks: u64, threads: &Threads) -> Result<u64, String> {
     let (def, mut weather) = Weather::new(seed);
     let far = 1i64 << (36 + seed % 24);
     let views = [View::Moved([far, -far]), View::Turned];
     let options = Recording { keyframe_seconds: 5, ..Recording::default() };
     let mut main = Recorder::with(World::new(&def).expect("accepted"), Vec::new(), options).expect("memory takes all");
-    let mut twins = Twins::new(main.world(), 3 + seed % 11);
+    let mut twins = Twins::new(main.world(), threads, 3 + seed % 11);
     let mut seen = views.map(|view| World::new(&view.def(&def)).expect("accepted"));
     for tick in 0..ticks {
         let mut commands = if tick == 0 { weather.begin() } else { Vec::new() };
@@ -140,9 +158,9 @@ fn played(file: &[u8], ticks: u64, hash: u64) -> Result<(), String> {
 /// Rooms by their seeds; all differences are told.
 fn rooms(seeds: std::ops::Range<u64>, ticks: u64) {
     let (start, count) = (Instant::now(), seeds.end - seeds.start);
-    let (mut digest, mut found) = (0u64, Vec::new());
+    let (threads, mut digest, mut found) = (threads(), 0u64, Vec::new());
     for seed in seeds {
-        match room(seed, ticks) {
+        match room(seed, ticks, &threads) {
             // Equal on all machines and in all builds.
             Ok(hash) => digest = digest.rotate_left(1) ^ hash,
             Err(error) => {
@@ -195,13 +213,13 @@ fn two_hundred_rooms_and_their_twins_agree() {
 fn drum(ticks: u64) {
     let (mut world, ids) = scenes::tumbler();
     let start = Instant::now();
-    let mut twins = None;
+    let (threads, mut twins) = (threads(), None);
     for tick in 1..=ticks {
         world.step();
         match tick % 1000 {
             0 => {
                 world.check().expect("every invariant holds");
-                twins = Some(Twins::new(&world, 5));
+                twins = Some(Twins::new(&world, &threads, 5));
                 for &id in &ids {
                     let (x, y) = position(&world, id);
                     assert!(x.hypot(y) < 14.9, "{id} got out in tick {tick}: {x}, {y}");

@@ -2,10 +2,11 @@
 
 use super::{Dice, PUSHED, at, shake, world_of_everything};
 use crate::replay::evidence::Evidence;
-use crate::replay::{Comparison, Flight, Recorder, Recording, compare};
+use crate::replay::{Comparison, Flight, Recorder, Recording, ReplayError, compare, read_index};
 use crate::world::Stage;
 use crate::{BodyDef, BodyKind, ColliderDef, Commands, Length, Shape, World};
 use std::io::{Cursor, Read, Result, Seek, SeekFrom};
+use twox_hash::XxHash3_64;
 
 /// A world in which much moves, a second old.
 fn lively() -> World {
@@ -152,4 +153,49 @@ fn comparing_reads_a_small_part_of_what_agrees() {
         let size = file.get_ref().len();
         assert!(read < size / 2, "{read} of {size} bytes were read");
     }
+}
+
+/// Its check is made to fit again, as one who forges a file does.
+#[test]
+fn an_index_that_cannot_be_is_refused() {
+    let options = Recording { keyframe_seconds: 1, ..Recording::default() };
+    let mut game = Recorder::with(lively(), Cursor::new(Vec::new()), options).expect("memory");
+    for _ in 0..200 {
+        game.step();
+    }
+    let file = game.finish().expect("memory").into_inner();
+    let word = |bytes: &[u8], at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().expect("eight bytes"));
+    let place = word(&file, file.len() - 16) as usize;
+    // Tag and length; the chain before it and the count; tick, offset and history of each; the check.
+    let (entry, last) = (|at: usize| place + 5 + 12 + 24 * at, file.len() - 25 - 4);
+    let count = (last - entry(0)) / 24;
+    assert!(count >= 3, "{count} keyframes");
+    let forged = |at: usize, value: u64| {
+        let mut bytes = file.clone();
+        bytes[at..at + 8].copy_from_slice(&value.to_le_bytes());
+        let chain = XxHash3_64::oneshot_with_seed(word(&file, place + 5), &bytes[place..last]);
+        bytes[last..last + 4].copy_from_slice(&(chain as u32).to_le_bytes());
+        read_index(&mut Cursor::new(bytes))
+    };
+    let tick = |at: usize| word(&file, entry(at));
+    let offset = |at: usize| word(&file, entry(at) + 8);
+    let read = forged(entry(1), tick(1)).expect("nothing is forged");
+    assert_eq!(read.iter().map(|keyframe| keyframe.tick).collect::<Vec<_>>(), (0..count).map(tick).collect::<Vec<_>>());
+    // A keyframe that is not later than the one before, in ticks or in the file; one where the index is, or behind it.
+    for (what, at, value) in [
+        ("tick", entry(1), tick(0)),
+        ("tick", entry(1), tick(2)),
+        ("offset", entry(1) + 8, offset(0)),
+        ("offset", entry(1) + 8, offset(2)),
+        ("end", entry(count - 1) + 8, place as u64),
+        ("end", entry(count - 1) + 8, place as u64 + 9),
+    ] {
+        let found = forged(at, value);
+        assert!(
+            matches!(found, Err(ReplayError::Corrupt { offset, .. }) if offset == place as u64),
+            "{what}: {found:?}"
+        );
+    }
+    // One byte before the index is possible, as far as an index shows.
+    assert!(forged(entry(count - 1) + 8, place as u64 - 1).is_ok());
 }
