@@ -46,3 +46,22 @@ fn what_is_near_is_the_same_from_one_limit_to_the_other() {
     }
     assert!(without > 500 && partly > 500 && apart > 500, "{without} {partly} {apart}");
 }
+
+/// A small triangle beyond the end of a box's side, its nearest corner off it, the next one just over its end: one point, farther
+/// away than what separates them.
+#[test]
+fn a_point_that_a_larger_limit_would_take_is_noted() {
+    let gaps = [3 * M / 10, 4 * M / 10];
+    for (sign, limit) in [(1, gaps[0]), (-1, gaps[0]), (1, gaps[1] - 1), (-1, gaps[1] - 1)] {
+        let top = [[sign * M / 10, -gaps[0]], [0, -gaps[1]]];
+        let top = if sign > 0 { top } else { [top[1], top[0]] };
+        let (small, square) = (polygon(&[top[0], top[1], [sign * M / 20, -M]]), rectangle(2 * M, 2 * M, 0));
+        let d = [-sign * M, M];
+        for (a, b, d) in [(&small, &square, d), (&square, &small, negated(d))] {
+            let seen = near(a, b, d, limit, &mut Faces::default());
+            assert!(!seen.apart && seen.manifold.count == 0, "{seen:?}");
+            assert_eq!((seen.from, seen.below), (gaps[0], gaps[1]));
+            assert_eq!(near(a, b, d, gaps[1], &mut Faces::default()).manifold.count, 1);
+        }
+    }
+}
