@@ -18,7 +18,7 @@ pub(crate) use tables::{Digests, Tables};
 pub const SAVE_VERSION: u32 = 4;
 /// The arithmetic law: what every number, rounding and order of operations is. Worlds of two laws continue
 /// differently, so a build refuses other laws.
-pub const LAW: u32 = 8;
+pub const LAW: u32 = 9;
 
 /// The hash of one part of a world's state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

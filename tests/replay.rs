@@ -621,7 +621,7 @@ fn other_versions_laws_and_tick_rates_are_refused() {
     assert_eq!(
         error(&file(Forge::of(REPLAY_VERSION, 9, 60, 0))).to_string(),
         format!(
-            "replay under arithmetic law 9, this build computes by law {LAW} and would play it differently: play it with a build \
+            "replay under arithmetic law 10, this build computes by law {LAW} and would play it differently: play it with a build \
              of law 9, or record it anew"
         )
     );

@@ -9,7 +9,7 @@ mod weather;
 
 use common::{Rng, acc, at, disc, newton_seconds, newtons, position, rectangle, run, world};
 use solid::{add, fixed, moving, solid, surface};
-use tamias2d::{Angle, BodyId, BodyKind, ColliderDef, Command, Commands, Vec2, Velocity, World, WorldDef};
+use tamias2d::{Angle, BodyId, BodyKind, ColliderDef, Command, Commands, Force, Vec2, Velocity, World, WorldDef};
 use weather::Weather;
 
 #[global_allocator]
@@ -240,7 +240,7 @@ fn commands_elsewhere_and_coarse_ticks_leave_alone_what_reposes() {
     }
 }
 
-/// Where a body at the end of a range rests nothing is limited, whether it is computed or known.
+/// Where rows would put a body beyond the end of a range, but it reposes, nothing is limited, whether it is computed or known.
 #[test]
 fn what_reposes_at_the_end_of_a_range_is_not_limited() {
     for far in [false, true] {
@@ -313,6 +313,67 @@ fn what_nothing_holds_goes_on() {
         run(&mut world, u64::from(rate) * 10);
         let way = position(&world, line[0]).0 - from;
         assert!((way / (50.0 * a) - 1.0).abs() < 0.02, "{count} boxes at {rate} ticks/s went {way} m of {}", 50.0 * a);
+    }
+}
+
+/// Nor by what stands but does not press it, and be it nearer than rows reach.
+#[test]
+fn what_stands_holds_only_what_is_pressed_to_it() {
+    for (rate, a) in [(60, 8e-4), (240, 3e-3), (1000, 1.3e-2)] {
+        let weightless = || World::new(&WorldDef { tick_rate: rate, ..WorldDef::default() }).expect("accepted");
+        let ice = || surface(rectangle(1.0, 1.0), 0.0, 0.0);
+        let seconds = |count: u32| u64::from(rate * count);
+        let goes = |mut world: World, body: BodyId, what: &str| {
+            let (_, from) = position(&world, body);
+            run(&mut world, seconds(3));
+            let way = position(&world, body).1 - from;
+            assert!((way / (4.5 * a) - 1.0).abs() < 0.02, "{what}, {rate} ticks/s: {way} m of {}", 4.5 * a);
+        };
+        // Two boxes, one on the other, that lie beside one that stands.
+        for gap in [0.001, 0.015] {
+            let mut world = weightless();
+            add(&mut world, fixed(0.0, -0.5, ice()));
+            add(&mut world, solid(0.0, 0.5, ice()));
+            let [upper, lower] = [0.75, -0.25].map(|y| add(&mut world, solid(1.0 + gap, y, ice())));
+            run(&mut world, seconds(1));
+            world.set_force(lower, newtons(0.0, 2.0 * a)).expect("accepted");
+            goes(world, upper, &format!("{gap} m beside what stands"));
+        }
+        // Two boxes that press each other, on a floor that bears nothing: they lie in it by less than what rows leave alone.
+        for (depth, press) in [(0.0, 0.01), (1e-5, 0.01), (5e-5, 0.01)] {
+            let mut world = weightless();
+            add(&mut world, fixed(0.5, depth - 0.5, rectangle(10.0, 1.0)));
+            let both = [(0.0, press), (1.0, -press)].map(|(x, press)| (add(&mut world, solid(x, 0.5, ice())), press));
+            let pull = |world: &mut World, up: f64| {
+                for (body, press) in both {
+                    world.set_force(body, newtons(press, up)).expect("accepted");
+                }
+            };
+            pull(&mut world, 0.0);
+            run(&mut world, seconds(1));
+            pull(&mut world, a);
+            goes(world, both[0].0, &format!("{depth} m in the floor"));
+        }
+    }
+}
+
+/// A force that changes by so little that it gives the same velocity, but another place, is another one.
+#[test]
+fn what_is_pushed_otherwise_is_computed_anew() {
+    for gravity in [0.0, -10.0] {
+        let mut world = world(0.0, gravity);
+        add(&mut world, fixed(0.0, -0.5, surface(rectangle(100.0, 1.0), 0.0, 0.0)));
+        let body = add(&mut world, solid(0.0, 0.5, surface(rectangle(1.0, 1.0), 0.0, 0.0)));
+        run(&mut world, 100);
+        // 8.4e-7 m/s² for a sixtieth of a second are half a unit of length; by units of the acceleration.
+        for units in 235_929_500..235_929_700i128 {
+            let mut twin = world.clone();
+            let force = Vec2::new(Force::from_bits(units << 16), Force::ZERO);
+            for world in [&mut world, &mut twin] {
+                world.apply(Command::ApplyForce { body, force, point: None }).expect("accepted");
+            }
+            step_both(&mut world, &mut twin, || format!("gravity {gravity}, {units} units"));
+        }
     }
 }
 

@@ -274,8 +274,6 @@ impl Solver {
         for &pair in &*fast {
             timeline.engage(pair as usize, &stage, movers);
         }
-        // What is found of where bodies end: of those in repose it does not count.
-        let mut ends = Vec::new();
         if movers.is_empty() {
             timeline.run([0, TICK], &stage, movers, faults);
         } else {
@@ -348,15 +346,16 @@ impl Solver {
                     movers.hit(places);
                 }
             }
-            movers.store(bodies, before, mobilities, scales, &mut ends);
         }
-        timeline.flights.store(bodies, movers, scales, &mut ends);
+        // Bounds that bodies meet where they end: those in repose do not end there.
+        let ends = faults.len();
+        movers.store(bodies, before, mobilities, scales, faults);
+        timeline.flights.store(bodies, movers, scales, faults);
         for &pair in &timeline.met {
             touch.pairs[pair as usize].met = true;
         }
         repose.put_back(bodies);
-        self.settle(&mut touch.pairs, contacts, bodies, drive, &mut ends);
-        faults.append(&mut ends);
+        self.settle(&mut touch.pairs, contacts, bodies, drive, (faults, ends));
         touch.join(&mut self.timeline.late, contacts);
     }
 

@@ -1,10 +1,10 @@
 //! Repose: islands that a tick leaves as they are.
 //!
 //! Rows leave some µm/s over, so nothing would ever come to rest exactly: a pile would tremble and creep, and cost what it costs
-//! when it moves. What hangs together by contacts, touches something that stands, and of which no body went faster in a tick than
-//! that, or is left faster, ends the tick as it began it, but without velocity; its contacts keep their impulses as well. From then
-//! on each tick of it is the same one, and what is known need not be computed: as long as it lies among the same neighbours under
-//! the same forces, it gets no rows.
+//! when it moves. Bodies that are neighbours, of which none went faster in a tick than that, or is left faster, and which contacts hold
+//! to something that stands, end the tick as they began it, but without velocity; their contacts keep their impulses as well. From
+//! then on each tick of them is the same one, and what is known need not be computed: as long as they lie among the same neighbours
+//! under the same forces, they get no rows.
 //!
 //! The first is law. The second is a memory of the law's results: it may be empty at any time, and makes no difference.
 
@@ -15,6 +15,7 @@ use super::Solver;
 use super::color::VACANT as NONE;
 use super::island::leader_of;
 use super::mover::Movers;
+use super::rows::LANES;
 use super::scales::Scales;
 use crate::body::{Bodies, BodyKind};
 use crate::contact::{Contact, Contacts, NEW, Pair};
@@ -49,6 +50,8 @@ struct Member {
     slot: u32,
     at: [i64; 3],
     kick: [i64; 3],
+    /// Accelerations of the same kick may differ in this.
+    bow: [i64; 3],
 }
 
 /// The islands of a tick, by place among the movers.
@@ -60,17 +63,19 @@ struct Calm {
     leader: Vec<u32>,
     /// Whether it does not repose; of one that stands for an island, whether that does not.
     up: Vec<bool>,
-    /// Of one that stands for an island: whether it touches what contacts do not move, and what stands; whether the next tick may be
-    /// another one; how many pairs it has.
-    held: Vec<bool>,
+    /// Another one that a contact presses it to, nearer to the one that stands for all that hang together by such; 0 for a body that
+    /// contacts do not move and that stands.
+    holder: Vec<u32>,
+    /// Of one that stands for an island: whether the next tick may be another one; how many pairs it has.
     fresh: Vec<bool>,
     pairs: Vec<u32>,
 }
 
 impl Member {
     fn new(slot: usize, bodies: &Bodies, drive: &Drive) -> Member {
-        let at = [bodies.x.bits()[slot], bodies.y.bits()[slot], bodies.angle.bits()[slot]];
-        Member { slot: slot as u32, at, kick: drive.kick.each_ref().map(|column| column[slot]) }
+        let at = place_of(bodies, slot);
+        let of = |columns: &[Vec<i64>; 3]| columns.each_ref().map(|column| column[slot]);
+        Member { slot: slot as u32, at, kick: of(&drive.kick), bow: of(&drive.bow) }
     }
 
     /// Whether nothing about it has changed.
@@ -188,13 +193,13 @@ impl Calm {
 
     /// Each body by itself; whether any is calm.
     fn find(&mut self, movers: &Movers, before: &[[i64; 6]], free: &[bool], bodies: &Bodies, scales: &Scales) -> bool {
-        let Calm { moves, leader, up, held, fresh, pairs } = self;
+        let Calm { moves, leader, up, holder, fresh, pairs } = self;
         moves.clear();
-        leader.clear();
-        leader.extend(0..free.len() as u32);
+        for own in [leader, holder] {
+            own.clear();
+            own.extend(0..free.len() as u32);
+        }
         up.clear();
-        held.clear();
-        held.resize(free.len(), false);
         fresh.clear();
         fresh.resize(free.len(), false);
         pairs.clear();
@@ -202,15 +207,15 @@ impl Calm {
         for (place, (&free, &[x, y, angle, ..])) in free.iter().zip(before).enumerate() {
             let slot = if place == 0 { 0 } else { movers.slot(place as u32) };
             let own = place != 0 && !free && !bodies.rest.is_asleep(slot);
-            let now = || [bodies.x.bits()[slot], bodies.y.bits()[slot], bodies.angle.bits()[slot]];
             moves.push(own);
-            let stays = || movers.creeps(place, LEAST, scales).unwrap_or_else(|| now() == [x, y, angle]);
+            let stays =
+                || movers.creeps(place, LEAST, scales).unwrap_or_else(|| place_of(bodies, slot) == [x, y, angle]);
             up.push(!own || !stays());
         }
         up.contains(&false)
     }
 
-    /// What contacts hold together, and what of it moves on.
+    /// What rows hold together, and what of it moves on.
     fn join(&mut self, places: &[[u32; 2]], before: &[[i64; 6]]) {
         for &[a, b] in places {
             let own = [a, b].map(|place| self.moves[place as usize]);
@@ -225,8 +230,7 @@ impl Calm {
             if drags(0, a) || drags(1, b) {
                 self.rouse([a, b]);
             } else if calm == [true; 2] {
-                let [a, b] = [a, b].map(|place| leader_of(&mut self.leader, place));
-                self.leader[a.max(b) as usize] = a.min(b);
+                unite(&mut self.leader, [a, b]);
             }
         }
     }
@@ -250,21 +254,21 @@ impl Calm {
 }
 
 impl Solver {
-    /// Finds the islands that end the tick as they began it, and leaves them so. `ends`: bodies of which a bound was noted where they
-    /// would have ended; of these it is none.
+    /// Finds the islands that end the tick as they began it, and leaves them so. The faults from `ends` on are bounds that bodies met
+    /// where rows or flights put them: they go for those that are put back.
     pub(super) fn settle(
         &mut self,
         pairs: &mut [Pair],
         contacts: &Contacts,
         bodies: &mut Bodies,
         drive: &Drive,
-        ends: &mut Vec<Fault>,
+        (faults, ends): (&mut Vec<Fault>, usize),
     ) {
         // What attracts pulls otherwise in each tick.
         let lasting = drive.sources.is_empty();
         let mut calm = core::mem::take(&mut self.repose.calm);
         if calm.find(&self.movers, &self.before, &self.free, bodies, &self.scales)
-            && self.find_calm(&mut calm, pairs, contacts)
+            && self.find_calm(&mut calm, pairs, contacts, bodies)
         {
             for place in 1..calm.moves.len() {
                 let Some(island) = calm.island(place as u32) else { continue };
@@ -282,14 +286,18 @@ impl Solver {
                     pair.stays = pair.row != NEW;
                 }
             }
-            ends.retain(|fault| calm.island(self.movers.place_of(fault.slot as u32)).is_none());
+            let mut at = 0..faults.len();
+            faults.retain(|fault| {
+                at.next() < Some(ends) || calm.island(self.movers.place_of(fault.slot as u32)).is_none()
+            });
             self.repose.remember(&mut calm, &self.movers, bodies, drive);
         }
         self.repose.calm = calm;
     }
 
-    /// Of islands of calm bodies, those of which no contact became another one. Whether there is one.
-    fn find_calm(&self, calm: &mut Calm, pairs: &[Pair], contacts: &Contacts) -> bool {
+    /// Of islands of calm bodies, those of which no contact became another one, and nobody goes on whom nothing holds. Whether there
+    /// may be one.
+    fn find_calm(&self, calm: &mut Calm, pairs: &[Pair], contacts: &Contacts, bodies: &Bodies) -> bool {
         calm.join(&self.places, &self.before);
         let met = self.fast.iter().chain(&self.timeline.met).map(|&at| &pairs[at as usize]).filter(|pair| pair.met);
         for bodies in met.map(|pair| pair.bodies).chain(self.timeline.late.iter().map(|&[_, bodies]| bodies)) {
@@ -304,21 +312,39 @@ impl Solver {
             if islands == [None; 2] {
                 continue;
             }
-            let contact = self.outcome(pair);
-            let same = is_same(&contact, pair, contacts);
-            let still = |place: usize| !calm.moves[place] && self.before[place][3..] == [0; 3];
-            let held = contact.touching && (still(places[0]) || still(places[1]));
+            let same = is_same(&self.outcome(pair), pair, contacts);
             for island in islands.into_iter().flatten() {
                 calm.up[island] |= !same;
-                calm.held[island] |= held;
+            }
+            let stands = |place: usize| !calm.moves[place] && self.before[place][3..] == [0; 3];
+            if self.presses(pair) {
+                let holders = places.map(|place| if stands(place) { 0 } else { place as u32 });
+                unite(&mut calm.holder, holders);
             }
         }
-        for (up, held) in calm.up.iter_mut().zip(&calm.held) {
-            // Of one that stands for no island nobody asks any more.
-            *up |= !held;
+        for place in 1..calm.moves.len() {
+            let Some(island) = calm.island(place as u32) else { continue };
+            let slot = self.movers.slot(place as u32);
+            let [x, y, angle, ..] = self.before[place];
+            let goes = place_of(bodies, slot) != [x, y, angle] || moves(bodies, slot);
+            calm.up[island] |= goes && leader_of(&mut calm.holder, place as u32) != 0;
         }
         true
     }
+
+    /// Whether rows of a pair pushed in this tick.
+    fn presses(&self, pair: &Pair) -> bool {
+        pair.row != NEW && {
+            let seat = self.colors.seats[pair.row as usize] as usize;
+            self.blocks[seat / LANES].spent(seat % LANES)
+        }
+    }
+}
+
+/// Lets the lower leader of two stand for both.
+fn unite(leader: &mut [u32], two: [u32; 2]) {
+    let [a, b] = two.map(|place| leader_of(leader, place));
+    leader[a.max(b) as usize] = a.min(b);
 }
 
 /// Whether a contact is what it was but for its impulses.
@@ -335,6 +361,11 @@ fn moves(bodies: &Bodies, slot: usize) -> bool {
 /// Whether a body that contacts do not move stays where it is in this tick.
 fn stays(bodies: &Bodies, slot: usize) -> bool {
     bodies.is_still(slot) || bodies.cold.value(slot).kind == BodyKind::Kinematic && !moves(bodies, slot)
+}
+
+/// Where a body is.
+fn place_of(bodies: &Bodies, slot: usize) -> [i64; 3] {
+    [bodies.x.bits()[slot], bodies.y.bits()[slot], bodies.angle.bits()[slot]]
 }
 
 /// Puts a body somewhere, without velocity.

@@ -8,7 +8,7 @@ from types import SimpleNamespace as Row
 
 from xxh3 import xxh3
 
-REPLAY_VERSION, SAVE_VERSION, LAW = 3, 4, 8
+REPLAY_VERSION, SAVE_VERSION, LAW = 3, 4, 9
 SIZES = {"u8": 1, "bool": 1, "u32": 4, "u64": 8, "i64": 8, "u128": 16, "i128": 16}
 WORLD, IDLE, TICK, TAIL, END, ANCILLARY = 0x01, 0x02, 0x03, 0x04, 0x0F, 0x80
 M64 = (1 << 64) - 1

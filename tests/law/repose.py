@@ -11,12 +11,13 @@ def settle(world, pairs, movers, faults, ends):
     for place, mover in enumerate(movers.list):
         if place and not movers.is_free(place) and not world.is_asleep(mover.slot):
             began, slot = past[mover.slot], mover.slot
-            stays = [state.x[slot], state.y[slot], state.angle[slot]] == [*began.x, began.angle]
+            stays = place_of(state, slot) == [*began.x, began.angle]
             if mover.hit:
                 stays = all(abs(way) <= LEAST * movers.scales.substeps for way in mover.sum)
             moving[place] = stays and all(abs(v) <= LEAST << 28 for v in mover.v)
     up = {place for place, calm in moving.items() if not calm}
-    edges, held = {}, []
+    # What is beside each other, and what contacts press together.
+    edges, presses, held = {}, {}, set()
     for pair in pairs:
         if pair.sensor:
             continue
@@ -28,16 +29,18 @@ def settle(world, pairs, movers, faults, ends):
         )
         if pair.met or pair.contact and moved or not same(pair):
             up |= set(own)
-        if len(own) == 1 and not moved and outcome(pair).touching:
-            held += own
+        pushed = pair.contact and pair.contact.spent()
+        if len(own) == 1 and not moved and pushed:
+            held |= set(own)
         if pair.contact and len(own) == 2:
-            edges.setdefault(own[0], []).append(own[1])
-            edges.setdefault(own[1], []).append(own[0])
+            for table in (edges, presses) if pushed else (edges,):
+                table.setdefault(own[0], []).append(own[1])
+                table.setdefault(own[1], []).append(own[0])
+    spread(held, presses)
+    # What nothing holds goes on.
+    up |= {place for place in moving if place not in held and goes(state, past, movers.list[place].slot)}
     spread(up, edges)
-    # What touches nothing that stands is held by nothing.
-    held = set(held)
-    spread(held, edges)
-    calm = {movers.list[place].slot for place in moving if place in held - up}
+    calm = {movers.list[place].slot for place in moving if place not in up}
     for slot in calm:
         world.seen["in repose"] += any((state.vx[slot], state.vy[slot], state.omega[slot]))
         (state.x[slot], state.y[slot]), state.angle[slot] = past[slot].x, past[slot].angle
@@ -48,6 +51,16 @@ def settle(world, pairs, movers, faults, ends):
     faults[ends:] = [fault for fault in faults[ends:] if fault[0] not in calm]
     for pair in pairs:
         pair.stays = bool(not pair.sensor and pair.contact and calm & set(pair.bodies))
+
+
+def place_of(state, slot):
+    return [state.x[slot], state.y[slot], state.angle[slot]]
+
+
+def goes(state, past, slot):
+    """Whether a body has a velocity, or is not where it was."""
+    began = [*past[slot].x, past[slot].angle]
+    return place_of(state, slot) != began or any((state.vx[slot], state.vy[slot], state.omega[slot]))
 
 
 def spread(places, edges):
