@@ -394,7 +394,17 @@ fn what_is_hard_to_turn_plays_alike_in_python() {
 /// The worlds of `pins.rs`, among them what is hostile.
 #[test]
 fn trials_play_alike_in_python() {
-    for (kind, seeds) in [(Kind::Cradle, 0..=7), (Kind::Row, 2..=3), (Kind::Crowd, 1..=3), (Kind::Wild, 0..=13)] {
+    let all = [
+        (Kind::Cradle, 0..=7),
+        (Kind::Row, 2..=3),
+        (Kind::Crowd, 1..=3),
+        // Something here creeps, or lies, beside what stands and is not pressed to it.
+        (Kind::Crowd, 142..=142),
+        (Kind::Crowd, 703..=703),
+        (Kind::Crowd, 1895..=1895),
+        (Kind::Wild, 0..=13),
+    ];
+    for (kind, seeds) in all {
         compare(kind.name(), seeds, |seed| trials::record(kind, seed));
     }
 }
