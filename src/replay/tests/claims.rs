@@ -1,8 +1,8 @@
-//! What evidence says of itself, and of what differs; what is kept last; how much of two recordings is read.
+//! What evidence says of itself, and of what differs; what is kept last; how much of two recordings is read; what is forged.
 
 use super::{Dice, PUSHED, at, shake, world_of_everything};
 use crate::replay::evidence::Evidence;
-use crate::replay::{Comparison, Flight, Recorder, Recording, ReplayError, compare, read_index};
+use crate::replay::{Comparison, Flight, Player, Recorder, Recording, ReplayError, compare, read_index};
 use crate::world::Stage;
 use crate::{BodyDef, BodyKind, ColliderDef, Commands, Length, Shape, World};
 use std::io::{Cursor, Read, Result, Seek, SeekFrom};
@@ -155,32 +155,47 @@ fn comparing_reads_a_small_part_of_what_agrees() {
     }
 }
 
-/// Its check is made to fit again, as one who forges a file does.
-#[test]
-fn an_index_that_cannot_be_is_refused() {
+fn word(bytes: &[u8], at: usize) -> u64 {
+    u64::from_le_bytes(bytes[at..at + 8].try_into().expect("eight bytes"))
+}
+
+/// A number of a record is another one, and the record's check fits again, as one who forges a file makes it. `chain`: where the
+/// record has that of the records before it.
+fn forged(file: &[u8], place: usize, chain: usize, at: usize, value: u64) -> Vec<u8> {
+    let mut bytes = file.to_vec();
+    let end = place + 5 + word(file, place + 1) as u32 as usize;
+    let seed = word(file, chain);
+    bytes[at..at + 8].copy_from_slice(&value.to_le_bytes());
+    let check = XxHash3_64::oneshot_with_seed(seed, &bytes[place..end]) as u32;
+    bytes[end..end + 4].copy_from_slice(&check.to_le_bytes());
+    bytes
+}
+
+/// A game of some seconds with a keyframe a second.
+fn with_keyframes() -> Vec<u8> {
     let options = Recording { keyframe_seconds: 1, ..Recording::default() };
     let mut game = Recorder::with(lively(), Cursor::new(Vec::new()), options).expect("memory");
-    for _ in 0..200 {
+    for tick in 0..200 {
+        shake(&mut game, tick, PUSHED);
         game.step();
     }
-    let file = game.finish().expect("memory").into_inner();
-    let word = |bytes: &[u8], at: usize| u64::from_le_bytes(bytes[at..at + 8].try_into().expect("eight bytes"));
+    game.finish().expect("memory").into_inner()
+}
+
+#[test]
+fn an_index_that_cannot_be_is_refused() {
+    let file = with_keyframes();
     let place = word(&file, file.len() - 16) as usize;
     // Tag and length; the chain before it and the count; tick, offset and history of each; the check.
-    let (entry, last) = (|at: usize| place + 5 + 12 + 24 * at, file.len() - 25 - 4);
-    let count = (last - entry(0)) / 24;
+    let entry = |at: usize| place + 5 + 12 + 24 * at;
+    let count = (file.len() - 25 - 4 - entry(0)) / 24;
     assert!(count >= 3, "{count} keyframes");
-    let forged = |at: usize, value: u64| {
-        let mut bytes = file.clone();
-        bytes[at..at + 8].copy_from_slice(&value.to_le_bytes());
-        let chain = XxHash3_64::oneshot_with_seed(word(&file, place + 5), &bytes[place..last]);
-        bytes[last..last + 4].copy_from_slice(&(chain as u32).to_le_bytes());
-        read_index(&mut Cursor::new(bytes))
-    };
+    let read = |at: usize, value: u64| read_index(&mut Cursor::new(forged(&file, place, place + 5, at, value)));
     let tick = |at: usize| word(&file, entry(at));
     let offset = |at: usize| word(&file, entry(at) + 8);
-    let read = forged(entry(1), tick(1)).expect("nothing is forged");
-    assert_eq!(read.iter().map(|keyframe| keyframe.tick).collect::<Vec<_>>(), (0..count).map(tick).collect::<Vec<_>>());
+    let listed = read(entry(1), tick(1)).expect("nothing is forged");
+    let ticks: Vec<u64> = listed.iter().map(|keyframe| keyframe.tick).collect();
+    assert_eq!(ticks, (0..count).map(tick).collect::<Vec<_>>());
     // A keyframe that is not later than the one before, in ticks or in the file; one where the index is, or behind it.
     for (what, at, value) in [
         ("tick", entry(1), tick(0)),
@@ -190,12 +205,50 @@ fn an_index_that_cannot_be_is_refused() {
         ("end", entry(count - 1) + 8, place as u64),
         ("end", entry(count - 1) + 8, place as u64 + 9),
     ] {
-        let found = forged(at, value);
+        let found = read(at, value);
         assert!(
             matches!(found, Err(ReplayError::Corrupt { offset, .. }) if offset == place as u64),
             "{what}: {found:?}"
         );
     }
     // One byte before the index is possible, as far as an index shows.
-    assert!(forged(entry(count - 1) + 8, place as u64 - 1).is_ok());
+    assert!(read(entry(count - 1) + 8, place as u64 - 1).is_ok());
+}
+
+#[test]
+fn a_keyframe_of_another_place_is_refused() {
+    let file = with_keyframes();
+    let keyframe = read_index(&mut Cursor::new(&file)).expect("an index")[1];
+    let place = keyframe.offset as usize;
+    // Ticks and commands before it, and the history.
+    for at in [0, 8, 16].map(|field| place + 5 + field) {
+        for value in [word(&file, at).wrapping_add(1), word(&file, at).wrapping_sub(1)] {
+            let bytes = forged(&file, place, place + 5 + 24, at, value);
+            let error = Player::new(&bytes[..]).expect("a replay").verify().expect_err("it is of another place");
+            let ReplayError::Corrupt { offset, reason, .. } = error else { panic!("{error}") };
+            assert_eq!((offset, reason), (keyframe.offset, "the keyframe is not of this place"));
+        }
+    }
+}
+
+/// Also if they make no difference.
+#[test]
+fn other_orders_are_told_from_faults() {
+    for differs in [false, true] {
+        let mut games = [(); 2].map(|()| Recorder::new(lively(), Cursor::new(Vec::new())).expect("memory"));
+        for tick in 0..20 {
+            if tick == 7 && differs {
+                games[1].apply(crate::Command::ClearStatus).expect("it always is");
+            }
+            games.iter_mut().for_each(Recorder::step);
+        }
+        let [mut a, mut b] = games.map(|game| game.finish().expect("memory"));
+        match compare([&mut a, &mut b]).expect("both can be read") {
+            Comparison::Same { .. } => assert!(!differs),
+            Comparison::Parted { tick, by_commands, .. } => {
+                assert_eq!((differs, by_commands, tick), (true, true, lively().tick() + 8));
+            }
+            Comparison::Apart { .. } => panic!("they overlap"),
+        }
+    }
 }
