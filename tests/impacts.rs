@@ -14,7 +14,7 @@ use solid::{
     add, energy, fixed, get, mass_of, moving, polygon, scaled_world, solid, spin, surface, turned, weighing,
     worst_overlap,
 };
-use tamias2d::{BodyDef, BodyId, BodyKind, ColliderDef, Inertia, World};
+use tamias2d::{BodyDef, BodyId, BodyKind, Bound, ColliderDef, Inertia, World, WorldDef};
 
 const G: f64 = 9.81;
 
@@ -561,4 +561,23 @@ fn copies_of_a_world_have_no_collisions() {
     assert!(world.collisions().is_empty());
     world.step();
     assert_eq!(world.collisions().len(), 1);
+}
+
+/// More happens in a tick than it has room for, to none of them so often that it would be said of that one.
+#[test]
+fn of_all_that_meet_too_often_together_it_is_said() {
+    let mut world = World::new(&WorldDef::default()).expect("accepted");
+    wall_in(&mut world, 3.5, 0.0, 1.0);
+    let mut rng = Rng(5);
+    let ids: Vec<BodyId> = (0..36)
+        .map(|at| {
+            let [x, y] = [at % 6, at / 6].map(|at| 1.1 * f64::from(at) - 2.75);
+            let (sin, cos) = (6.3 * rng.unit()).sin_cos();
+            add(&mut world, moving(solid(x, y, surface(disc(0.3), 0.0, 1.0)), 2e4 * cos, 2e4 * sin))
+        })
+        .collect();
+    world.step();
+    // The first body of each bound is named.
+    let said: Vec<Bound> = world.status().entries().iter().map(|entry| entry.bound).collect();
+    assert!(said.contains(&Bound::Impacts), "{} bodies: {said:?}", ids.len());
 }

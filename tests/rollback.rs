@@ -413,6 +413,32 @@ fn a_ring_says_what_it_holds() {
     assert_eq!(Rollback::new(0).capacity(), 1);
 }
 
+/// A frame that is used again holds the contacts of who sleeps now, also if they are as many as before.
+#[test]
+fn a_frame_used_again_has_nothing_of_what_it_was() {
+    let sleeping = Some(Sleeping::default());
+    let mut world =
+        World::new(&WorldDef { gravity: acc(0.0, -9.81), sleeping, ..WorldDef::default() }).expect("accepted");
+    world.create_body(&fixed(0.0, -1.0, rectangle(40.0, 2.0))).expect("accepted");
+    let both = [-5.0, 5.0].map(|x| world.create_body(&solid(x, 0.5, rectangle(1.0, 1.0))).expect("accepted"));
+    let mut frame = Frame::default();
+    for wakes in [0, 1] {
+        common::run(&mut world, 200);
+        assert!(both.iter().all(|&body| !world.body(body).expect("it is there").is_awake()));
+        world.wake(both[wakes]).expect("it is there");
+        common::run(&mut world, 1);
+        world.save_frame(&mut frame);
+        let mut twin = world.clone();
+        common::run(&mut world, 3);
+        world.restore_frame(&frame).expect("its own");
+        assert_eq!((world.save() == twin.save(), world.check()), (true, Ok(())), "{wakes}");
+        for tick in 0..100 {
+            (world.step(), twin.step());
+            assert_eq!(world.hash(), twin.hash(), "{wakes}, {tick}");
+        }
+    }
+}
+
 /// What changes a table of a world, one after the other.
 fn table_changes() -> Vec<(&'static str, Command)> {
     let body = BodyId { index: 1, generation: 0 };
