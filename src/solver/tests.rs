@@ -253,3 +253,15 @@ fn what_turns_fast_across_a_gap_has_no_rows() {
     }
     assert!(has_row("0", "0"));
 }
+
+/// A world whose units are 2^k times as large measures speeds in them.
+#[test]
+fn speeds_grow_with_the_unit() {
+    let speeds = |k: u32| {
+        let scales = Scales::new(60, 10, k);
+        [scales.still(), scales.swinging(), scales.least_settled(), scales.least_strike(0, false, 0)]
+    };
+    for k in 1..=10 {
+        assert_eq!(speeds(k), speeds(0).map(|speed| speed << k), "{k}");
+    }
+}
