@@ -7,9 +7,11 @@ mod solid;
 #[path = "common/weather.rs"]
 mod weather;
 
-use common::{Rng, acc, at, disc, newton_seconds, newtons, position, rectangle, run, world};
-use solid::{add, fixed, moving, solid, surface};
-use tamias2d::{Angle, BodyId, BodyKind, ColliderDef, Command, Commands, Force, Vec2, Velocity, World, WorldDef};
+use common::{Rng, acc, at, disc, newton_seconds, newtons, num, position, rectangle, run, world};
+use solid::{add, fixed, moving, solid, surface, weighing};
+use tamias2d::{
+    Angle, BodyDef, BodyId, BodyKind, ColliderDef, Command, Commands, Force, Sleeping, Vec2, Velocity, World, WorldDef,
+};
 use weather::Weather;
 
 #[global_allocator]
@@ -375,6 +377,58 @@ fn what_is_pushed_otherwise_is_computed_anew() {
             step_both(&mut world, &mut twin, || format!("gravity {gravity}, {units} units"));
         }
     }
+}
+
+/// A body that keeps a velocity with which it gets nowhere does not keep a stack beside it from repose.
+#[test]
+fn what_gets_nowhere_keeps_nobody_from_repose() {
+    for (damping, speed) in [(1.0, 1e-3), (5.0, 1e-3), (0.0, 1e-9)] {
+        let mut world = world(0.0, -10.0);
+        floor(&mut world);
+        let stack = (0..10).map(|at| add(&mut world, solid(0.0, 0.5 + f64::from(at), rectangle(1.0, 1.0))));
+        let stack: Vec<BodyId> = stack.collect();
+        let beside = solid(1.01, 2.0, surface(rectangle(1.0, 1.0), 0.0, 0.0));
+        let linear_damping = num(&damping.to_string());
+        let beside = add(&mut world, BodyDef { linear_damping, ..moving(weighing(beside, 1.0), 0.0, speed) });
+        world.set_force(beside, newtons(0.0, 10.0)).expect("accepted");
+        let moves = |world: &World, id: BodyId| !world.body(id).expect("it is there").velocity().is_zero();
+        let tick = (0..3000).find(|_| {
+            world.step();
+            !moves(&world, stack[0]) && !moves(&world, stack[9])
+        });
+        assert!(tick.is_some(), "damping {damping}, {speed} m/s");
+    }
+}
+
+/// Who sleeps between what is known and what is computed has rows with both.
+#[test]
+fn what_is_known_beside_who_sleeps_makes_no_difference() {
+    let mut rng = Rng(3);
+    let mut asleep = 0;
+    for round in 0..200 {
+        let sleeping = Some(Sleeping::default());
+        let mut world = World::new(&WorldDef { substeps: 20, sleeping, ..WorldDef::default() }).expect("accepted");
+        let mut ids = Vec::new();
+        for column in 0..4 {
+            for row in 0..3 {
+                let collider = if rng.below(4) == 0 { disc(0.5) } else { rectangle(1.0, 1.0) };
+                let def = solid(f64::from(column), 0.5 + 1.019 * f64::from(row), collider);
+                ids.push(add(&mut world, weighing(def, [1.0, 10.0, 1e6][rng.below(3) as usize])));
+            }
+        }
+        world.set_force(ids[6], newtons(-1e-3, 0.0)).expect("accepted");
+        let mut watched = world.clone();
+        for tick in 0..40 {
+            if tick == 10 + round % 10 {
+                for world in [&mut world, &mut watched] {
+                    world.put_to_sleep(ids[10]).expect("accepted");
+                }
+            }
+            step_both(&mut world, &mut watched, || format!("round {round}, tick {tick}"));
+            asleep += usize::from(!world.body(ids[10]).expect("it is there").is_awake());
+        }
+    }
+    assert!(asleep > 1000, "{asleep}");
 }
 
 /// Rooms in which something happens now and then: `seeds` of them, for so many ticks.

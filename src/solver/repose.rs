@@ -299,7 +299,8 @@ impl Solver {
     /// may be one.
     fn find_calm(&self, calm: &mut Calm, pairs: &[Pair], contacts: &Contacts, bodies: &Bodies) -> bool {
         calm.join(&self.places, &self.before);
-        let met = self.fast.iter().chain(&self.timeline.met).map(|&at| &pairs[at as usize]).filter(|pair| pair.met);
+        let may_have_met = self.fast.iter().chain(&self.timeline.met).chain(&self.turning);
+        let met = may_have_met.map(|&at| &pairs[at as usize]).filter(|pair| pair.met);
         for bodies in met.map(|pair| pair.bodies).chain(self.timeline.late.iter().map(|&[_, bodies]| bodies)) {
             calm.rouse(bodies.map(|slot| self.movers.place_of(slot)));
         }
@@ -325,8 +326,10 @@ impl Solver {
         for place in 1..calm.moves.len() {
             let Some(island) = calm.island(place as u32) else { continue };
             let slot = self.movers.slot(place as u32);
-            let [x, y, angle, ..] = self.before[place];
-            let goes = place_of(bodies, slot) != [x, y, angle] || moves(bodies, slot);
+            let [x, y, angle, vx, vy, omega] = self.before[place];
+            // What is too slow to get anywhere, and becomes no faster, goes nowhere.
+            let faster = moves(bodies, slot) && velocity_of(bodies, slot) != [vx, vy, omega];
+            let goes = faster || place_of(bodies, slot) != [x, y, angle];
             calm.up[island] |= goes && leader_of(&mut calm.holder, place as u32) != 0;
         }
         true
@@ -358,14 +361,20 @@ fn moves(bodies: &Bodies, slot: usize) -> bool {
     !bodies.velocity(slot).is_zero() || bodies.omega.get(slot) != AngularVelocity::ZERO
 }
 
-/// Whether a body that contacts do not move stays where it is in this tick.
+/// Whether no contact moves a body, and it stays where it is in this tick. Not who sleeps: in his rows others may be as well, and
+/// which sweep solves these depends on how many rows he has.
 fn stays(bodies: &Bodies, slot: usize) -> bool {
-    bodies.is_still(slot) || bodies.cold.value(slot).kind == BodyKind::Kinematic && !moves(bodies, slot)
+    bodies.cold.value(slot).kind != BodyKind::Dynamic && !moves(bodies, slot)
 }
 
 /// Where a body is.
 fn place_of(bodies: &Bodies, slot: usize) -> [i64; 3] {
     [bodies.x.bits()[slot], bodies.y.bits()[slot], bodies.angle.bits()[slot]]
+}
+
+fn velocity_of(bodies: &Bodies, slot: usize) -> [i64; 3] {
+    let velocity = bodies.velocity(slot);
+    [velocity.x.to_bits(), velocity.y.to_bits(), bodies.omega.get(slot).to_bits()]
 }
 
 /// Puts a body somewhere, without velocity.

@@ -58,9 +58,10 @@ def place_of(state, slot):
 
 
 def goes(state, past, slot):
-    """Whether a body has a velocity, or is not where it was."""
-    began = [*past[slot].x, past[slot].angle]
-    return place_of(state, slot) != began or any((state.vx[slot], state.vy[slot], state.omega[slot]))
+    """Whether a body is not where it was, or has a velocity that it had not."""
+    began, velocity = past[slot], [state.vx[slot], state.vy[slot], state.omega[slot]]
+    faster = any(velocity) and velocity != [*began.v, began.omega]
+    return faster or place_of(state, slot) != [*began.x, began.angle]
 
 
 def spread(places, edges):
