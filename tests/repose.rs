@@ -431,6 +431,65 @@ fn what_is_known_beside_who_sleeps_makes_no_difference() {
     assert!(asleep > 1000, "{asleep}");
 }
 
+/// Bodies side by side, with and without gaps, some of them fixed, that are pushed by next to nothing, put to sleep and woken: `seeds`
+/// of them, for so many ticks.
+fn grids(seeds: std::ops::Range<u64>, ticks: u64) {
+    for seed in seeds {
+        let mut rng = Rng(seed);
+        let pick = |rng: &mut Rng, from: &[f64]| from[rng.below(from.len() as u64) as usize];
+        let tick_rate = [15, 60, 240, 1000][rng.below(4) as usize];
+        let gravity = acc(0.0, pick(&mut rng, &[0.0, 0.0, -0.01, -10.0]));
+        let sleeping = (rng.below(3) > 0).then(Sleeping::default);
+        let substeps = [4, 10, 20][rng.below(3) as usize];
+        let def = WorldDef { tick_rate, substeps, gravity, sleeping, ..WorldDef::default() };
+        let mut world = World::new(&def).expect("accepted");
+        if rng.below(3) == 0 {
+            floor(&mut world);
+        }
+        let [across, up] = [1; 2].map(|least| least + rng.below(4));
+        let gaps = [pick(&mut rng, &[0.0, 1e-3, 0.019]), pick(&mut rng, &[0.0, 1e-3, 0.01, 0.019])];
+        let mut ids = Vec::new();
+        for at in 0..across * up {
+            let [column, row] = [at % across, at / across].map(|at| at as f64);
+            let collider = if rng.below(4) == 0 { disc(0.5) } else { rectangle(1.0, 1.0) };
+            let collider = surface(collider, pick(&mut rng, &[0.0, 0.5]), 0.0);
+            let def = solid((1.0 + gaps[0]) * column, 0.5 + (1.0 + gaps[1]) * row, collider);
+            let (damping, mass) = (pick(&mut rng, &[0.0, 0.0, 1.0]), pick(&mut rng, &[1.0, 10.0, 1e6]));
+            let def = if rng.below(10) == 0 {
+                BodyDef { kind: BodyKind::Kinematic, ..def }
+            } else {
+                BodyDef { linear_damping: num(&damping.to_string()), ..weighing(def, mass) }
+            };
+            ids.push(add(&mut world, def));
+        }
+        let mut watched = world.clone();
+        for tick in 0..ticks {
+            if tick == 0 || rng.below(8) == 0 {
+                let id = ids[rng.below(ids.len() as u64) as usize];
+                let small = f64::powi(10.0, -1 - rng.below(7) as i32);
+                let [x, y] = [1.0, 1.0].map(|one| one * small * pick(&mut rng, &[-1.0, 0.0, 1.0]));
+                let kind = if tick == 0 { 3 } else { rng.below(8) };
+                for world in [&mut world, &mut watched] {
+                    let _refused_or_not = match kind {
+                        0 => world.wake(id),
+                        1 => world.clear_status(),
+                        2 => world.set_velocity(id, Vec2::from_f64(x / 100.0, y / 100.0).expect("in range")),
+                        3 => world.set_force(id, newtons(x, y)),
+                        4 => world.apply_force(id, newtons(x, y), None),
+                        _ => world.put_to_sleep(id),
+                    };
+                }
+            }
+            step_both(&mut world, &mut watched, || format!("grid {seed}, tick {tick}"));
+        }
+    }
+}
+
+#[test]
+fn grids_go_on_as_if_all_had_been_computed() {
+    grids(0..2000, 60);
+}
+
 /// Rooms in which something happens now and then: `seeds` of them, for so many ticks.
 fn rooms(seeds: std::ops::Range<u64>, ticks: u64) {
     for seed in seeds {
@@ -461,6 +520,7 @@ fn rooms_go_on_as_if_all_had_been_computed() {
 
 #[test]
 #[ignore = "minutes: cargo test --release --test repose -- --ignored"]
-fn many_rooms_go_on_as_if_all_had_been_computed() {
+fn many_rooms_and_grids_go_on_as_if_all_had_been_computed() {
     rooms(0..600, 3000);
+    grids(600..20_000, 120);
 }
