@@ -1,10 +1,11 @@
 //! Repose: islands that a tick leaves as they are.
 //!
 //! Rows leave some µm/s over, so nothing would ever come to rest exactly: a pile would tremble and creep, and cost what it costs
-//! when it moves. Bodies that are neighbours, of which none went faster in a tick than that, or is left faster, and which contacts hold
-//! to something that stands, end the tick as they began it, but without velocity; their contacts keep their impulses as well. From
-//! then on each tick of them is the same one, and what is known need not be computed: as long as they lie among the same neighbours
-//! under the same forces, they get no rows.
+//! when it moves. Bodies that are neighbours, of which none went faster in a tick than that, or is left faster, end the tick as they
+//! began it, but without velocity; their contacts keep their impulses as well. That is so if contacts hold each of them to something
+//! that stands; or else if the tick has left it where it was, with the velocity that it had. From then on each tick of them is the
+//! same one, and what is known need not be computed: as long as they lie among the same neighbours under the same forces, they get no
+//! rows.
 //!
 //! The first is law. The second is a memory of the law's results: it may be empty at any time, and makes no difference.
 
@@ -50,7 +51,7 @@ struct Member {
     slot: u32,
     at: [i64; 3],
     kick: [i64; 3],
-    /// Accelerations of the same kick may differ in this.
+    /// What forces add to its way. Of accelerations that give the same kick, one may be rounded up here.
     bow: [i64; 3],
 }
 
