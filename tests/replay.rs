@@ -619,10 +619,10 @@ fn other_versions_laws_and_tick_rates_are_refused() {
     );
     assert!(matches!(error(&file(Forge::of(REPLAY_VERSION, LAW + 1, 60, 0))), ReplayError::Law { known: LAW, .. }));
     assert_eq!(
-        error(&file(Forge::of(REPLAY_VERSION, 9, 60, 0))).to_string(),
+        error(&file(Forge::of(REPLAY_VERSION, 10, 60, 0))).to_string(),
         format!(
             "replay under arithmetic law 10, this build computes by law {LAW} and would play it differently: play it with a build \
-             of law 9, or record it anew"
+             of law 10, or record it anew"
         )
     );
     assert_eq!(

@@ -4,9 +4,9 @@
 
 use crate::common::{Rng, acc, at, disc, newton_seconds, newtons, rectangle, vel};
 use tamias2d::{
-    Acceleration, Angle, AngularVelocity, Attractor, Body, BodyDef, BodyId, BodyKind, ColliderDef, Command, Damping,
-    Filter, Force, Friction, Impulse, Integrator, Length, Mass, Mu, Restitution, Shape, Sleeping, Torque, Vec2,
-    Velocity, World, WorldDef,
+    Acceleration, Angle, AngularVelocity, Attractor, Body, BodyDef, BodyId, BodyKind, Bound, ColliderDef, Command,
+    Damping, Filter, Force, Friction, Impulse, Integrator, Length, Mass, Mu, Restitution, Shape, Sleeping, Torque,
+    Vec2, Velocity, World, WorldDef,
 };
 
 /// Half of the room's width, between the middles of its walls.
@@ -205,7 +205,7 @@ impl View {
     }
 
     fn angle(self, angle: Angle) -> Angle {
-        if self == View::Turned { Angle::from_bits(angle.to_bits() + HALF) } else { angle }
+        if self == View::Turned { Angle::from_bits(angle.to_bits().wrapping_add(HALF)) } else { angle }
     }
 
     /// A world's definition as seen from there.
@@ -266,7 +266,11 @@ impl View {
         if here.events() != there.events() {
             return Some(format!("events: {:?} and {:?}", here.events(), there.events()));
         }
-        (here.status() != there.status()).then(|| "status".into())
+        let limited = |world: &World| {
+            let entries = world.status().entries().iter().filter(|entry| entry.bound != Bound::Turns);
+            entries.map(|entry| format!("{entry:?}")).collect::<Vec<_>>()
+        };
+        (limited(here) != limited(there)).then(|| "status".into())
     }
 
     fn name(self, here: &World, there: &World) -> String {
@@ -274,7 +278,8 @@ impl View {
         here.bodies().zip(there.bodies()).find(differs).map(|(a, _)| a.id().to_string()).unwrap_or_default()
     }
 
-    /// What moves of a body, as it must look from there. The centre: an origin is derived from it, and rounded.
+    /// What moves of a body, as it must look from there. The centre: an origin is derived from it, and rounded. Of the angle what is
+    /// left of whole turns: these come to the end of their range, and begin anew, by half a turn sooner or later.
     fn seen(self, body: &Body<'_>) -> [(&'static str, i64); 7] {
         let p = self.point(body.center_of_mass());
         let v = vector!(self == View::Turned, body.velocity(), Velocity);
@@ -283,7 +288,7 @@ impl View {
             ("center.y", p.y.to_bits()),
             ("velocity.x", v.x.to_bits()),
             ("velocity.y", v.y.to_bits()),
-            ("angle", self.angle(body.angle()).to_bits()),
+            ("angle", self.angle(body.angle()).to_bits() & (2 * HALF - 1)),
             ("angular_velocity", body.angular_velocity().to_bits()),
             ("awake", i64::from(body.is_awake())),
         ]
