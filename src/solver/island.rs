@@ -109,8 +109,7 @@ impl Islands {
         self.leader.clear();
         self.leader.extend(0..free.len() as u32);
         for &[a, b] in places.iter().filter(|pair| !pair.map(|place| free[place as usize]).contains(&true)) {
-            let (a, b) = (leader_of(&mut self.leader, a), leader_of(&mut self.leader, b));
-            self.leader[a.max(b) as usize] = a.min(b);
+            unite(&mut self.leader, [a, b]);
         }
     }
 }
@@ -128,6 +127,12 @@ pub(super) fn leader_of(leader: &mut [u32], mut place: u32) -> u32 {
         place = up;
     }
     place
+}
+
+/// Lets the lower one of two leaders stand for both.
+pub(super) fn unite(leader: &mut [u32], places: [u32; 2]) {
+    let [a, b] = places.map(|place| leader_of(leader, place));
+    leader[a.max(b) as usize] = a.min(b);
 }
 
 /// Orders an island's contacts by levels, so that what touches is near each other. The highest level.

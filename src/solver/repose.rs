@@ -14,7 +14,7 @@ mod tests;
 
 use super::Solver;
 use super::color::VACANT as NONE;
-use super::island::leader_of;
+use super::island::{leader_of, unite};
 use super::mover::Movers;
 use super::rows::LANES;
 use super::scales::Scales;
@@ -74,7 +74,7 @@ struct Calm {
 
 impl Member {
     fn new(slot: usize, bodies: &Bodies, drive: &Drive) -> Member {
-        let at = place_of(bodies, slot);
+        let at = pose(bodies, slot);
         let of = |columns: &[Vec<i64>; 3]| columns.each_ref().map(|column| column[slot]);
         Member { slot: slot as u32, at, kick: of(&drive.kick), bow: of(&drive.bow) }
     }
@@ -209,8 +209,7 @@ impl Calm {
             let slot = if place == 0 { 0 } else { movers.slot(place as u32) };
             let own = place != 0 && !free && !bodies.rest.is_asleep(slot);
             moves.push(own);
-            let stays =
-                || movers.creeps(place, LEAST, scales).unwrap_or_else(|| place_of(bodies, slot) == [x, y, angle]);
+            let stays = || movers.creeps(place, LEAST, scales).unwrap_or_else(|| pose(bodies, slot) == [x, y, angle]);
             up.push(!own || !stays());
         }
         up.contains(&false)
@@ -330,7 +329,7 @@ impl Solver {
             let [x, y, angle, vx, vy, omega] = self.before[place];
             // What is too slow to get anywhere, and becomes no faster, goes nowhere.
             let faster = moves(bodies, slot) && velocity_of(bodies, slot) != [vx, vy, omega];
-            let goes = faster || place_of(bodies, slot) != [x, y, angle];
+            let goes = faster || pose(bodies, slot) != [x, y, angle];
             calm.up[island] |= goes && leader_of(&mut calm.holder, place as u32) != 0;
         }
         true
@@ -343,12 +342,6 @@ impl Solver {
             self.blocks[seat / LANES].spent(seat % LANES)
         }
     }
-}
-
-/// Lets the lower leader of two stand for both.
-fn unite(leader: &mut [u32], two: [u32; 2]) {
-    let [a, b] = two.map(|place| leader_of(leader, place));
-    leader[a.max(b) as usize] = a.min(b);
 }
 
 /// Whether a contact is what it was but for its impulses.
@@ -368,8 +361,8 @@ fn stays(bodies: &Bodies, slot: usize) -> bool {
     bodies.cold.value(slot).kind != BodyKind::Dynamic && !moves(bodies, slot)
 }
 
-/// Where a body is.
-fn place_of(bodies: &Bodies, slot: usize) -> [i64; 3] {
+/// Where a body is, and how it is turned.
+fn pose(bodies: &Bodies, slot: usize) -> [i64; 3] {
     [bodies.x.bits()[slot], bodies.y.bits()[slot], bodies.angle.bits()[slot]]
 }
 

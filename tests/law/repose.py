@@ -11,7 +11,7 @@ def settle(world, pairs, movers, faults, ends):
     for place, mover in enumerate(movers.list):
         if place and not movers.is_free(place) and not world.is_asleep(mover.slot):
             began, slot = past[mover.slot], mover.slot
-            stays = place_of(state, slot) == [*began.x, began.angle]
+            stays = pose(state, slot) == [*began.x, began.angle]
             if mover.hit:
                 stays = all(abs(way) <= LEAST * movers.scales.substeps for way in mover.sum)
             moving[place] = stays and all(abs(v) <= LEAST << 28 for v in mover.v)
@@ -53,7 +53,7 @@ def settle(world, pairs, movers, faults, ends):
         pair.stays = bool(not pair.sensor and pair.contact and calm & set(pair.bodies))
 
 
-def place_of(state, slot):
+def pose(state, slot):
     return [state.x[slot], state.y[slot], state.angle[slot]]
 
 
@@ -61,7 +61,7 @@ def goes(state, past, slot):
     """Whether a body is not where it was, or has a velocity that it had not."""
     began, velocity = past[slot], [state.vx[slot], state.vy[slot], state.omega[slot]]
     faster = any(velocity) and velocity != [*began.v, began.omega]
-    return faster or place_of(state, slot) != [*began.x, began.angle]
+    return faster or pose(state, slot) != [*began.x, began.angle]
 
 
 def spread(places, edges):
