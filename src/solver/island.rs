@@ -2,9 +2,9 @@
 //!
 //! Found anew each tick, from the contacts in order and what the last tick left of them, so ids have no say but for order.
 
+use super::constraints::overlap;
 use super::direct::GIVEN_UP;
 use super::mobility::Mobility;
-use super::overlap;
 use super::scales::Scales;
 use crate::body::Bodies;
 use crate::contact::{Contact, Pair};

@@ -9,6 +9,7 @@ mod avx2;
 #[cfg(all(target_arch = "x86_64", avx512))]
 mod avx512;
 mod color;
+mod constraints;
 mod direct;
 mod equations;
 mod fast;
@@ -42,17 +43,16 @@ use crate::motion::{Drive, Fault};
 use crate::num::mul;
 use crate::threads::Crew;
 use color::Colors;
+use constraints::Constraints;
 use direct::{Direct, GIVEN_UP, Rows};
-use fast::{strikes, swings};
 use flight::TICK;
 pub use impact::{Impact, ImpactError, Striker, impact};
-use island::{Islands, Vote, hard, vote};
+use island::Islands;
 use kernel::Kernel;
 pub(crate) use mobility::Mobility;
 use mover::Movers;
 use prepare::{Basis, Joint};
 pub(crate) use repose::Repose;
-
 use rows::{Block, LANES};
 pub(crate) use scales::Scales;
 pub(crate) use show::Substep;
@@ -65,12 +65,6 @@ use turning::{Turning, turns};
 /// better and a tick takes 1.6 times as long.
 const RELAX: u32 = 5;
 
-/// So many pairs make a piece: 4 µs.
-const PAIRS: usize = 512;
-
-/// What two ways of computing how far two bodies overlap may differ by: 10 nm, Q32 m.
-const ROUNDING: i64 = 43;
-
 /// The solver's own memory. All of it is derived, and none of it but mobilities and scales lasts from tick to tick.
 #[derive(Debug, Default)]
 pub(crate) struct Solver {
@@ -82,14 +76,7 @@ pub(crate) struct Solver {
     movers: Movers,
     before: Vec<[i64; 6]>,
     free: Vec<bool>,
-    /// By contact: the places of its bodies among the movers, its pair, whether it is heavy and squeezes, how it was solved, and what it says
-    /// of how its island is to be.
-    places: Vec<[u32; 2]>,
-    rows: Vec<u32>,
-    heavy: Vec<bool>,
-    modes: Vec<u8>,
-    votes: Vec<Vote>,
-    squeezed: Vec<bool>,
+    constraints: Constraints,
     islands: Islands,
     direct: Direct,
     /// Pairs that may strike.
@@ -127,115 +114,35 @@ impl Solver {
         drive: &Drive,
         crew: Crew,
     ) {
-        let Solver {
-            mobilities,
-            scales,
-            coming,
-            movers,
-            before,
-            free,
-            places,
-            rows,
-            heavy,
-            modes,
-            votes,
-            squeezed,
-            islands,
-            direct,
-            fast,
-            turning,
-            timeline,
-            colors,
-            blocks,
-            kernel,
-            repose,
-        } = self;
-        repose.confirm(&mut touch.pairs, bodies, drive);
-        movers.clear(bodies.cold.len());
-        movers.others = !repose.is_empty();
-        timeline.clear(bodies.cold.len());
-        places.clear();
-        rows.clear();
-        heavy.clear();
-        modes.clear();
-        votes.clear();
-        squeezed.clear();
-        fast.clear();
-        turning.clear();
-        coming.resize(touch.pairs.len(), false);
-        crew.share((touch.pairs.as_slice(), coming.as_mut_slice()), PAIRS, |(pairs, coming)| {
-            for (pair, coming) in pairs.iter().zip(coming) {
-                let swings = || swings(pair, bodies, drive, mobilities, scales);
-                *coming = !pair.stays
-                    && (pair.manifold.count == 0 || strikes(pair, bodies, drive, scales, false) || swings());
-            }
-        });
-        for (at, pair) in touch.pairs.iter().enumerate().filter(|(_, pair)| !pair.sensor) {
-            if coming[at] {
-                fast.push(at as u32);
-            } else {
-                // What others lie on that stay is known to rows all the same.
-                for slot in pair.bodies.into_iter().filter(|&slot| !(pair.stays && repose.holds(slot))) {
-                    movers.place(slot, bodies, &mobilities[slot as usize], scales);
-                }
-            }
-        }
-        // Among others, what does not bounce is stopped by rows as well, and in piles for less; and more is slow.
-        fast.retain(|&at| {
-            let pair = &touch.pairs[at as usize];
-            let among = pair.bodies.iter().all(|&slot| movers.place_of(slot) != 0);
-            let strikes = || strikes(pair, bodies, drive, scales, true);
-            let swings = || swings(pair, bodies, drive, mobilities, scales);
-            !among || pair.manifold.count == 0 || pair.restitution > 0 && (strikes() || swings())
-        });
-        for &at in &*fast {
-            let pair = &mut touch.pairs[at as usize];
-            let deepest = overlap(pair);
-            pair.met = deepest >= 0;
-            pair.depth = deepest.max(0).saturating_add(ROUNDING);
-            pair.manifold.count = 0;
-        }
-        // Without a hard contact nobody asks for votes.
-        let mut any_hard = false;
-        for (at, pair) in touch.pairs.iter_mut().enumerate().filter(|(_, pair)| pair.manifold.count > 0 && !pair.stays)
-        {
-            pair.row = places.len() as u32;
-            // All that move have one by now.
-            places.push(pair.bodies.map(|slot| movers.place_of(slot)));
-            rows.push(at as u32);
-            let old = pair.last(contacts);
-            let overlap = overlap(pair);
-            heavy.push(Scales::is_heavy(old.normal));
-            squeezed.push(scales.is_squeezed(old.normal, overlap));
-            modes.push(old.mode);
-            any_hard |= hard(overlap, &old, scales);
-        }
-        if any_hard {
-            votes.extend(rows.iter().map(|&at| {
-                let pair = &touch.pairs[at as usize];
-                let old = pair.last(contacts);
-                vote(pair, &old, bodies, mobilities, scales)
-            }));
-        }
-        if movers.turns {
-            let turn = |pair: &Pair| pair.row != NEW && turns(pair, bodies, mobilities, scales);
-            turning.extend(touch.pairs.iter().enumerate().filter(|(_, pair)| turn(pair)).map(|(at, _)| at as u32));
-        }
+        self.repose.confirm(&mut touch.pairs, bodies, drive);
+        self.movers.clear(bodies.cold.len());
+        self.movers.others = !self.repose.is_empty();
+        self.timeline.clear(bodies.cold.len());
+        self.part(&mut touch.pairs, bodies, drive, crew);
+        self.constrain(&mut touch.pairs, contacts, bodies);
+        self.look_back(bodies, drive);
+
+        let Solver { mobilities, scales, movers, free, constraints, islands, direct, colors, blocks, kernel, .. } =
+            self;
+        let Constraints { places, pairs: rows, heavy, squeezed, modes, votes } = &*constraints;
+        movers.find_squeezed(squeezed, places, free, drive, mobilities, scales);
+        islands.find(places, free, votes);
+        colors.assign(places, free, heavy, &islands.apart);
+        blocks.resize_with(colors.blocks, Block::default);
+        let basis = Basis { pairs: &touch.pairs, rows, places, heavy, contacts, bodies, mobilities, scales };
+        basis.write(blocks, colors, *kernel, crew);
+        direct.build(islands, &Rows { places, modes, seats: &colors.seats, blocks }, movers, mobilities, scales);
+    }
+
+    /// Notes where the tick begins, of what will be elsewhere when that is asked for.
+    fn look_back(&mut self, bodies: &Bodies, drive: &Drive) {
+        let Solver { mobilities, scales, movers, before, free, fast, timeline, repose, .. } = self;
         movers.look_brisk(repose.slots(), drive, scales);
         if !fast.is_empty() || movers.brisk {
             timeline.remember(bodies);
         }
         movers.remember(bodies, before);
         movers.yielding(mobilities, free);
-        movers.find_squeezed(squeezed, places, free, drive, mobilities, scales);
-        islands.find(places, free, votes);
-        colors.assign(places, free, heavy, &islands.apart);
-        blocks.resize_with(colors.blocks, Block::default);
-
-        let basis = Basis { pairs: &touch.pairs, rows, places, heavy, contacts, bodies, mobilities, scales };
-        basis.write(blocks, colors, *kernel, crew);
-        let rows = Rows { places, modes, seats: &colors.seats, blocks };
-        direct.build(islands, &rows, movers, mobilities, scales);
     }
 
     /// Impacts and substeps, after the bodies have moved as if nothing touched them; bodies that were struck or pushed are
@@ -252,103 +159,29 @@ impl Solver {
         mut watch: impl FnMut(u32, Substep<'_>),
         crew: Crew,
     ) {
-        let Solver {
-            mobilities,
-            scales,
-            movers,
-            before,
-            free,
-            places,
-            direct,
-            fast,
-            turning,
-            timeline,
-            colors,
-            blocks,
-            kernel,
-            repose,
-            ..
-        } = self;
-        let stage =
-            Stage { bodies, colliders, touch, drive, mobilities, scales, seats: &colors.seats, blocks: &[], repose };
-        for &pair in &*fast {
-            timeline.engage(pair as usize, &stage, movers);
-        }
-        if movers.is_empty() {
-            timeline.run([0, TICK], &stage, movers, faults);
+        self.engage(touch, bodies, colliders, drive);
+        if self.movers.is_empty() {
+            self.strike([0, TICK], touch, bodies, colliders, drive, faults);
         } else {
-            movers.take_kicks(bodies, mobilities, scales);
-            let swept = colors.swept;
-            for block in &blocks[..swept] {
-                kernel.warm_start(block, &mut movers.lanes);
-            }
-            blocks[swept..].iter().for_each(|block| block.warm_start(&mut movers.lanes));
-            for substep in 1..=scales.substeps {
-                movers.begin(substep == 1, crew);
-                for &pair in &*turning {
-                    let anew = Turning { bodies, colliders, mobilities, scales, before };
-                    let pair = &mut touch.pairs[pair as usize];
-                    let seat = colors.seats[pair.row as usize] as usize;
-                    if colors.is_apart(seat / LANES) {
-                        continue;
-                    }
-                    anew.renew(pair, places[pair.row as usize], &mut blocks[seat / LANES], seat % LANES, movers);
-                }
-                for (_, block) in blocks.iter_mut().enumerate().filter(|&(at, _)| !colors.is_apart(at)) {
-                    kernel.solve::<true>(block, u8::MAX, &mut movers.lanes, scales);
-                }
-                direct.solve::<true>(blocks, &mut movers.lanes, scales);
-                movers.hold_back(mobilities);
-                movers.drift(scales, crew);
-                let seats = &colors.seats;
-                let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats, blocks, repose };
-                timeline.run(scales.span(substep), &stage, movers, faults);
-                for pair in timeline.retired.drain(..) {
-                    let seat = colors.seats[touch.pairs[pair as usize].row as usize] as usize;
-                    blocks[seat / LANES].retire(seat % LANES);
-                }
-                movers.welcome(mobilities, &timeline.past, before, free);
-                for Settled { pair, manifold, between } in timeline.settled.drain(..) {
-                    let (at, pair) = (pair, &mut touch.pairs[pair as usize]);
-                    if !turning.contains(&at) && turns(pair, bodies, mobilities, scales) {
-                        turning.push(at);
-                    }
-                    (pair.manifold, pair.row) = (manifold, places.len() as u32);
-                    places.push(pair.bodies.map(|slot| movers.place_of(slot)));
-                    let both = places[pair.row as usize];
-                    let seat = colors.late(blocks, both, free);
-                    let (block, i) = (&mut blocks[seat / LANES], seat % LANES);
-                    let mobility = pair.bodies.map(|slot| &mobilities[slot as usize]);
-                    Joint::new(pair, both, [between; 2], mobility).write(
-                        block,
-                        i,
-                        &Contact::default(),
-                        pair.friction,
-                        scales,
-                    );
-                    block.backdate(i, &movers.lanes);
-                }
-                let all = substep % RELAX == 0 || substep == scales.substeps;
-                for (_, block) in blocks.iter_mut().enumerate().filter(|&(at, _)| !colors.is_apart(at)) {
-                    let lanes = if all { u8::MAX } else { block.pushes | block.heavy };
-                    if lanes == 0 {
-                        continue;
-                    }
-                    kernel.solve::<false>(block, lanes, &mut movers.lanes, scales);
-                }
-                direct.solve::<false>(blocks, &mut movers.lanes, scales);
+            self.warm_start(bodies);
+            for substep in 1..=self.scales.substeps {
+                self.movers.begin(substep == 1, crew);
+                self.renew(&mut touch.pairs, bodies, colliders);
+                self.sweep::<true>(|_| u8::MAX);
+                self.movers.hold_back(&self.mobilities);
+                self.movers.drift(&self.scales, crew);
+                self.strike(self.scales.span(substep), touch, bodies, colliders, drive, faults);
+                self.admit(&mut touch.pairs, bodies);
+                let all = substep % RELAX == 0 || substep == self.scales.substeps;
+                self.sweep::<false>(|block| if all { u8::MAX } else { block.pushes | block.heavy });
+                let Solver { movers, blocks, colors, timeline, .. } = self;
                 watch(substep, Substep { touch, bodies, movers, blocks, colors, timeline });
             }
-            movers.hold_back(mobilities);
-            for (row, &places) in places.iter().enumerate() {
-                let seat = colors.seats[row] as usize;
-                if blocks[seat / LANES].spent(seat % LANES) {
-                    movers.hit(places);
-                }
-            }
+            self.end_rows();
         }
         // Bounds that bodies meet where they end: those in repose do not end there.
         let ends = faults.len();
+        let Solver { mobilities, scales, movers, before, timeline, repose, .. } = self;
         movers.store(bodies, before, mobilities, scales, faults);
         timeline.flights.store(bodies, movers, scales, faults);
         for &pair in &timeline.met {
@@ -357,6 +190,106 @@ impl Solver {
         repose.put_back(bodies);
         self.settle(&mut touch.pairs, contacts, bodies, drive, (faults, ends));
         touch.join(&mut self.timeline.late, contacts);
+    }
+
+    /// Looks for when the pairs that come fast meet.
+    fn engage(&mut self, touch: &Touch, bodies: &Bodies, colliders: &Colliders, drive: &Drive) {
+        let Solver { mobilities, scales, movers, fast, timeline, colors, repose, .. } = self;
+        let seats = &colors.seats;
+        let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats, blocks: &[], repose };
+        for &pair in &*fast {
+            timeline.engage(pair as usize, &stage, movers);
+        }
+    }
+
+    /// Last tick's impulses.
+    fn warm_start(&mut self, bodies: &Bodies) {
+        let Solver { mobilities, scales, movers, colors, blocks, kernel, .. } = self;
+        movers.take_kicks(bodies, mobilities, scales);
+        let (swept, apart) = blocks.split_at(colors.swept);
+        for block in swept {
+            kernel.warm_start(block, &mut movers.lanes);
+        }
+        apart.iter().for_each(|block| block.warm_start(&mut movers.lanes));
+    }
+
+    /// Makes the rows of what turns fast anew.
+    fn renew(&mut self, pairs: &mut [Pair], bodies: &Bodies, colliders: &Colliders) {
+        let Solver { mobilities, scales, movers, before, constraints, turning, colors, blocks, .. } = self;
+        let anew = Turning { bodies, colliders, mobilities, scales, before };
+        for &pair in &*turning {
+            let pair = &mut pairs[pair as usize];
+            let seat = colors.seats[pair.row as usize] as usize;
+            if !colors.is_apart(seat / LANES) {
+                let places = constraints.places[pair.row as usize];
+                anew.renew(pair, places, &mut blocks[seat / LANES], seat % LANES, movers);
+            }
+        }
+    }
+
+    /// Goes through all rows once, and of swept blocks through those lanes.
+    fn sweep<const BIASED: bool>(&mut self, lanes: impl Fn(&Block) -> u8) {
+        let Solver { scales, movers, direct, colors, blocks, kernel, .. } = self;
+        for (_, block) in blocks.iter_mut().enumerate().filter(|&(at, _)| !colors.is_apart(at)) {
+            let lanes = lanes(block);
+            if lanes != 0 {
+                kernel.solve::<BIASED>(block, lanes, &mut movers.lanes, scales);
+            }
+        }
+        direct.solve::<BIASED>(blocks, &mut movers.lanes, scales);
+    }
+
+    /// The impacts of a part of the tick, Q32.
+    fn strike(
+        &mut self,
+        span: [i64; 2],
+        touch: &Touch,
+        bodies: &Bodies,
+        colliders: &Colliders,
+        drive: &Drive,
+        faults: &mut Vec<Fault>,
+    ) {
+        let Solver { mobilities, scales, movers, timeline, colors, blocks, repose, .. } = self;
+        let seats = &colors.seats;
+        let stage = Stage { bodies, colliders, touch, drive, mobilities, scales, seats, blocks, repose };
+        timeline.run(span, &stage, movers, faults);
+    }
+
+    /// After impacts: takes the rows from what struck and parts, and gives rows to what struck and stays together.
+    fn admit(&mut self, pairs: &mut [Pair], bodies: &Bodies) {
+        let Solver { mobilities, scales, movers, before, free, constraints, turning, timeline, colors, blocks, .. } =
+            self;
+        for pair in timeline.retired.drain(..) {
+            let seat = colors.seats[pairs[pair as usize].row as usize] as usize;
+            blocks[seat / LANES].retire(seat % LANES);
+        }
+        movers.welcome(mobilities, &timeline.past, before, free);
+        for Settled { pair: at, manifold, between } in timeline.settled.drain(..) {
+            let pair = &mut pairs[at as usize];
+            if !turning.contains(&at) && turns(pair, bodies, mobilities, scales) {
+                turning.push(at);
+            }
+            let places = pair.bodies.map(|slot| movers.place_of(slot));
+            (pair.manifold, pair.row) = (manifold, constraints.places.len() as u32);
+            constraints.places.push(places);
+            let seat = colors.late(blocks, places, free);
+            let (block, i) = (&mut blocks[seat / LANES], seat % LANES);
+            let joint = Joint::new(pair, places, [between; 2], pair.bodies.map(|slot| &mobilities[slot as usize]));
+            joint.write(block, i, &Contact::default(), pair.friction, scales);
+            block.backdate(i, &movers.lanes);
+        }
+    }
+
+    /// After the last substep: notes whom rows pushed.
+    fn end_rows(&mut self) {
+        let Solver { mobilities, movers, constraints, colors, blocks, .. } = self;
+        movers.hold_back(mobilities);
+        for (&places, &seat) in constraints.places.iter().zip(&colors.seats) {
+            let seat = seat as usize;
+            if blocks[seat / LANES].spent(seat % LANES) {
+                movers.hit(places);
+            }
+        }
     }
 
     /// Whether the tick may have moved what was left out of it: then it is to be computed again, with that.
@@ -400,7 +333,7 @@ impl Solver {
         }
         contact.normal = [0, 1].map(|at| block.points[at].carried(i));
         contact.tangent = block.friction.carried(i);
-        contact.mode = match self.modes.get(pair.row as usize) {
+        contact.mode = match self.constraints.modes.get(pair.row as usize) {
             _ if manifold.count == 0 => 0,
             _ if self.colors.is_apart(seat / LANES) => {
                 self.direct.mode([0, 1].map(|body: usize| block.bodies[body][i]))
@@ -410,10 +343,4 @@ impl Solver {
         };
         contact
     }
-}
-
-/// By how much a pair overlaps, Q32 m; negative by the gap, and nothing is as far as one without points.
-fn overlap(pair: &Pair) -> i64 {
-    let points = &pair.manifold.points[..pair.manifold.count as usize];
-    points.iter().map(|point| point.separation.saturating_neg()).max().unwrap_or(i64::MIN)
 }

@@ -298,7 +298,7 @@ impl Solver {
     /// Of islands of calm bodies, those of which no contact became another one, and nobody goes on whom nothing holds. Whether there
     /// may be one.
     fn find_calm(&self, calm: &mut Calm, pairs: &[Pair], contacts: &Contacts, bodies: &Bodies) -> bool {
-        calm.join(&self.places, &self.before);
+        calm.join(&self.constraints.places, &self.before);
         let may_have_met = self.fast.iter().chain(&self.timeline.met).chain(&self.turning);
         let met = may_have_met.map(|&at| &pairs[at as usize]).filter(|pair| pair.met);
         for bodies in met.map(|pair| pair.bodies).chain(self.timeline.late.iter().map(|&[_, bodies]| bodies)) {

@@ -148,12 +148,12 @@ impl Solver {
 
     /// Hands on what is of one tick, from the preparation of its rows on.
     pub(crate) fn show_tick(&self, touch: &Touch, draft: &mut Draft, tables: &mut impl Tables) {
-        let Solver { movers, before, free, modes, fast, turning, timeline, colors, blocks, .. } = self;
+        let Solver { movers, before, free, constraints, fast, turning, timeline, colors, blocks, .. } = self;
         show_rows(draft, tables, &touch.pairs, blocks, colors);
         movers.show(draft, tables);
         draft.table(tables, "movers when the tick began", Kind::List, before.iter());
         draft.table(tables, "movers that no impulse moves", Kind::List, free.iter());
-        draft.table(tables, "how contacts are solved", Kind::List, modes.iter());
+        draft.table(tables, "how contacts are solved", Kind::List, constraints.modes.iter());
         draft.table(tables, "pairs that may strike", Kind::List, fast.iter());
         draft.table(tables, "pairs that turn", Kind::List, turning.iter());
         if !fast.is_empty() || movers.brisk {

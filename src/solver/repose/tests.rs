@@ -39,7 +39,7 @@ fn held(world: &World) -> usize {
 
 /// How many contacts were solved in the last tick.
 fn rows(world: &World) -> usize {
-    world.solver.places.len()
+    world.solver.constraints.places.len()
 }
 
 #[test]
