@@ -10,12 +10,12 @@ use tamias2d::{Aabb, AttractorId, BodyId, ColliderId, Command, Commands, Filter,
 const MOST_COMMANDS: usize = 256;
 
 /// The input as decisions.
-pub fn run(data: &[u8]) {
+pub fn run(data: &[u8]) -> bool {
     if data.len() > LONGEST {
-        return;
+        return false;
     }
     let mut draw = Draw::new(data);
-    let Ok(world) = World::new(&draw.world()) else { return };
+    let Ok(world) = World::new(&draw.world()) else { return false };
     let mut game = Game::new(world);
     while !draw.is_empty() && game.given < MOST_COMMANDS && game.world.tick() < MOST_TICKS {
         match draw.below(16) {
@@ -31,6 +31,7 @@ pub fn run(data: &[u8]) {
     }
     game.tick();
     game.record(draw.byte());
+    true
 }
 
 struct Game {

@@ -5,10 +5,10 @@ use tamias2d::World;
 use tamias2d::replay::Evidence;
 
 /// The first byte says how the rest is split and mended.
-pub fn run(data: &[u8]) {
-    let Some((&mode, rest)) = data.split_first() else { return };
+pub fn run(data: &[u8]) -> bool {
+    let Some((&mode, rest)) = data.split_first() else { return false };
     if rest.len() > LONGEST {
-        return;
+        return false;
     }
     let (one, other) = rest.split_at(if mode & 2 > 0 { rest.len() / 2 } else { rest.len() });
     let read = |bytes: &[u8]| {
@@ -21,7 +21,7 @@ pub fn run(data: &[u8]) {
         assert!(evidence.encode() == bytes, "what is read is written alike");
         Some(evidence)
     };
-    let Some(one) = read(one) else { return };
+    let Some(one) = read(one) else { return false };
     let _is_a_world = World::load(one.before()).and_then(|_| World::load(one.after()));
     let ending = one.ending();
     if let Ok(found) = one.first_difference(&one) {
@@ -36,4 +36,5 @@ pub fn run(data: &[u8]) {
             }
         }
     }
+    true
 }

@@ -1,5 +1,6 @@
 //! What each fuzz target does with its input: whatever that is, nothing panics, hangs, takes memory without bound or breaks an
-//! invariant. `tests/corpus.rs` of the engine compiles these files as well, and gives them the committed corpus.
+//! invariant. Each says whether its input was read to the end, so that one sees what a corpus reaches. `tests/corpus.rs` of the engine
+//! compiles these files as well, and gives them the committed corpus and fresh seeds.
 
 pub mod commands;
 mod course;
@@ -9,6 +10,7 @@ pub mod hello;
 mod mend;
 pub mod replay;
 pub mod scene;
+pub mod seeds;
 pub mod snapshot;
 
 /// Longer input is passed over: what a tick takes grows with what there is, and without a bound the fuzzers look for nothing else.

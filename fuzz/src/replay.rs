@@ -4,11 +4,11 @@ use super::{LONGEST, MOST_TICKS, is_small, mend, sound};
 use std::io::Cursor;
 use tamias2d::replay::{Contents, Player, Segment, compare, read_index, recompute};
 
-/// A byte that says whether the rest is mended, and a replay.
-pub fn run(data: &[u8]) {
-    let Some((&mode, rest)) = data.split_first() else { return };
+/// A byte that says whether the rest is mended, and a replay. Whether it is whole and has keyframes.
+pub fn run(data: &[u8]) -> bool {
+    let Some((&mode, rest)) = data.split_first() else { return false };
     if rest.len() > LONGEST {
-        return;
+        return false;
     }
     let mut file = rest.to_vec();
     if mode & 1 > 0 {
@@ -23,14 +23,15 @@ pub fn run(data: &[u8]) {
         panic!("what plays to its end is whole: {error}");
     }
     let _index = read_index(&mut Cursor::new(&file));
-    if let Ok(contents) = contents {
-        segments(&file, &contents);
+    if let Ok(contents) = &contents {
+        segments(&file, contents);
     }
     if whole.is_some() {
         let half = &file[..file.len() / 2];
         let _comparison = compare([&mut Cursor::new(file.as_slice()), &mut Cursor::new(half)]);
         let _evidence = recompute(&mut Cursor::new(&file), u64::from(mode >> 1 & 7));
     }
+    contents.is_ok_and(|contents| !contents.keyframes.is_empty())
 }
 
 /// Plays as far as worlds are small. Whether to the end without an error; none if it was too much.

@@ -43,7 +43,7 @@ def run(path):
             ticks += steps
     except (Bad, OSError) as error:
         return ticks, f"{type(error).__name__}: {error}", seen
-    return ticks, None, seen
+    return ticks, None if ticks else "there is no tick", seen
 
 
 def main(arguments):
