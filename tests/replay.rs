@@ -14,7 +14,7 @@ use std::rc::Rc;
 use tamias2d::replay::{Player, REPLAY_VERSION, Recorder, Recording, ReplayError, Summary, read_index};
 use tamias2d::{
     Angle, Attractor, AttractorId, BodyDef, BodyId, BodyKind, ColliderId, Command, CommandError, Commands, DecodeError,
-    Filter, LAW, Vec2, World, WorldDef,
+    Filter, LAW, Sleeping, Vec2, World, WorldDef,
 };
 use twox_hash::XxHash3_64;
 
@@ -67,7 +67,16 @@ impl Write for Tape {
 
 /// A world with two bodies and a star.
 fn start() -> World {
-    let mut world = world(0.0, -9.8);
+    start_of(world(0.0, -9.8))
+}
+
+/// The same, and bodies can sleep in it.
+fn drowsy() -> World {
+    let def = WorldDef { gravity: acc(0.0, -9.8), sleeping: Some(Sleeping::default()), ..WorldDef::default() };
+    start_of(World::new(&def).expect("accepted"))
+}
+
+fn start_of(mut world: World) -> World {
     let gone = world.create_body(&BodyDef::default()).expect("accepted");
     for i in 0..2 {
         let colliders = vec![disc(0.75)];
@@ -173,6 +182,10 @@ fn one_of_each() -> Vec<Command> {
         Command::ApplyImpulse { body, impulse: newton_seconds(1.0, 2.0), point: Some(at(0.0, 1.0)) },
         Command::ApplyImpulse { body, impulse: newton_seconds(1.0, -2.0), point: None },
         Command::ApplyAngularImpulse { body, impulse: num("-9") },
+        Command::SetAllowSleep { body: TWO, allow: false },
+        Command::SetAllowSleep { body: TWO, allow: true },
+        Command::PutToSleep { body },
+        Command::Wake { body },
         Command::SetFixedRotation { body, fixed: true },
         Command::SetKind { body, kind: BodyKind::Kinematic },
         Command::CreateAttractor { attractor: star },
@@ -198,9 +211,9 @@ fn no_command_is_missed() {
             kinds.push(kind);
         }
     }
-    assert_eq!(kinds.len(), 26, "every variant of `Command` is here");
+    assert_eq!(kinds.len(), 29, "every variant of `Command` is here");
     // Each before its own tick, and all before one.
-    let mut game = Recorder::new(start(), Vec::new()).expect("it can be written");
+    let mut game = Recorder::new(drowsy(), Vec::new()).expect("it can be written");
     for command in &commands {
         game.apply(command.clone()).expect("accepted");
         game.step();
@@ -216,7 +229,7 @@ fn no_command_is_missed() {
     let count = commands.len() as u64;
     assert_eq!(verify(&file).expect("it plays"), Summary { ticks: count, commands: count, hash });
 
-    let mut game = Recorder::new(start(), Vec::new()).expect("it can be written");
+    let mut game = Recorder::new(drowsy(), Vec::new()).expect("it can be written");
     for command in &commands {
         game.apply(command.clone()).expect("accepted");
     }
@@ -234,7 +247,7 @@ fn the_methods_are_recorded_as_the_commands_are() {
     let (body, id) = (ONE, AttractorId { index: 0, generation: 0 });
     let collider = ColliderId { index: 0, generation: 0 };
     let star = Attractor { position: at(7.0, 7.0), mu: num("3") };
-    let mut game = Recorder::new(start(), Vec::new()).expect("it can be written");
+    let mut game = Recorder::new(drowsy(), Vec::new()).expect("it can be written");
     game.create_body(&BodyDef { position: at(4.0, 4.0), user_data: 7, ..BodyDef::default() }).expect("accepted");
     game.set_position(body, at(1.0, -2.0)).expect("accepted");
     game.set_angle(body, Angle::from_bits(-77)).expect("accepted");
@@ -252,6 +265,10 @@ fn the_methods_are_recorded_as_the_commands_are() {
     game.apply_impulse(body, newton_seconds(1.0, 2.0), Some(at(0.0, 1.0))).expect("accepted");
     game.apply_impulse(body, newton_seconds(1.0, -2.0), None).expect("accepted");
     game.apply_angular_impulse(body, num("-9")).expect("accepted");
+    game.set_allow_sleep(TWO, false).expect("accepted");
+    game.set_allow_sleep(TWO, true).expect("accepted");
+    game.put_to_sleep(body).expect("accepted");
+    game.wake(body).expect("accepted");
     game.set_fixed_rotation(body, true).expect("accepted");
     game.set_kind(body, BodyKind::Kinematic).expect("accepted");
     game.create_attractor(star).expect("accepted");
