@@ -14,7 +14,9 @@ from replay import Bad, hash_parts, play, save, state_hash  # noqa: E402
 from world import World  # noqa: E402
 
 REPLAYS = Path(__file__).resolve().parent.parent.parent / "replays"
-GOLDENS = ("free_flight", "spin", "orbit", "tc10c", "tc11c", "everything", "sensors", "pusher")
+GOLDENS = (
+    "free_flight", "spin", "orbit", "tc10c", "tc11c", "everything", "sensors", "pusher", "churn", "pixels", "sleep"
+)
 
 
 def differs(path, state, recorded):
@@ -47,9 +49,11 @@ def run(path):
 
 
 def main(arguments):
-    failed = False
     paths = [Path(a) for a in arguments] or [REPLAYS / f"{name}.replay" for name in GOLDENS]
-    for path in sorted(REPLAYS.glob("*.replay")) if arguments == ["--all"] else paths:
+    if arguments == ["--all"]:
+        paths = sorted(REPLAYS.glob("*.replay"))
+    failed = not paths
+    for path in paths:
         start = time.monotonic()
         ticks, wrong, seen = run(path)
         failed |= wrong is not None
