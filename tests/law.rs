@@ -12,6 +12,7 @@ mod draws;
 #[path = "common/trials.rs"]
 mod trials;
 
+use draws::Draws;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -68,49 +69,19 @@ fn differences(out: &str) -> String {
     text
 }
 
-/// Numbers that look random and are the same in each run (splitmix64).
-struct Draws(u64);
-
-impl Draws {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+/// Of any size up to 64 bits; the ends are frequent.
+fn narrow(draws: &mut Draws) -> i64 {
+    match draws.below(12) {
+        0 => draws.pick(&[0, 1, -1, i64::MAX, -i64::MAX, i64::MIN]),
+        _ => draws.bits() as i64 >> draws.below(64),
     }
+}
 
-    fn below(&mut self, end: u64) -> u64 {
-        self.bits() % end
-    }
-
-    /// `low ..= high`.
-    fn between(&mut self, low: i64, high: i64) -> i64 {
-        low + self.below((high - low + 1) as u64) as i64
-    }
-
-    fn chance(&mut self, percent: u64) -> bool {
-        self.below(100) < percent
-    }
-
-    /// Of any size up to 64 bits; the ends are frequent.
-    fn narrow(&mut self) -> i64 {
-        match self.below(12) {
-            0 => [0, 1, -1, i64::MAX, -i64::MAX, i64::MIN][self.below(6) as usize],
-            _ => self.bits() as i64 >> self.below(64),
-        }
-    }
-
-    /// Of any size up to 128 bits.
-    fn wide(&mut self) -> i128 {
-        match self.below(12) {
-            0 => [0, 1, -1, i128::MAX, -i128::MAX, i128::MIN][self.below(6) as usize],
-            _ => (i128::from(self.bits() as i64) << 64 | i128::from(self.bits())) >> self.below(128),
-        }
-    }
-
-    fn shift(&mut self) -> u32 {
-        self.between(1, 126) as u32
+/// Of any size up to 128 bits.
+fn wide(draws: &mut Draws) -> i128 {
+    match draws.below(12) {
+        0 => draws.pick(&[0, 1, -1, i128::MAX, -i128::MAX, i128::MIN]),
+        _ => (i128::from(draws.bits() as i64) << 64 | i128::from(draws.bits())) >> draws.below(128),
     }
 }
 
@@ -121,12 +92,13 @@ fn kernels_give_what_plain_integers_give() {
         lines.push_str(&line);
         lines.push('\n');
     };
-    let mut draws = Draws(1);
+    let draws = &mut Draws::new(1);
     for _ in 0..2000 {
-        let (a, b, shift) = ([draws.narrow(), draws.narrow()], [draws.narrow(), draws.narrow()], draws.shift());
+        let (a, b) = ([narrow(draws), narrow(draws)], [narrow(draws), narrow(draws)]);
+        let shift = draws.between(1, 126) as u32;
         let (lift, zero) = (draws.between(0, 62) as u32, draws.between(0, 130) as u32);
-        let (u, v) = ([draws.wide(), draws.wide()], [draws.wide(), draws.wide()]);
-        let (square, wide_shift) = (draws.wide() as u128, draws.between(1, 127) as u32);
+        let (u, v) = ([wide(draws), wide(draws)], [wide(draws), wide(draws)]);
+        let (square, wide_shift) = (wide(draws) as u128, draws.between(1, 127) as u32);
         let four = format!("{} {} {} {}", a[0], a[1], b[0], b[1]);
         let [cos, sin] = <[i32; 2]>::from(sin_cos(Angle::from_bits(a[0])));
         note(format!("round_shift {} {zero} = {}", u[0], round_shift(u[0], zero)));
@@ -177,7 +149,7 @@ fn shape(draws: &mut Draws) -> Shape {
 }
 
 fn body(draws: &mut Draws) -> BodyDef {
-    let fast = [1000, 5000, 40_000][draws.below(3) as usize];
+    let fast = draws.pick(&[1000, 5000, 40_000]);
     let spin = [0, 1000, 20_000][draws.below(3) as usize];
     let mut speed = |most: i64| thousandths(draws.between(-most, most), 48);
     let velocity = Vec2::new(Velocity::from_bits(speed(fast)), Velocity::from_bits(speed(fast)));
@@ -220,7 +192,7 @@ fn wall([x, y]: [i64; 2], [width, height]: [i64; 2]) -> BodyDef {
 
 /// A recorded world of a floor or none, one to four bodies that collide, and some impulses.
 fn record(seed: u64) -> Vec<u8> {
-    let draws = &mut Draws(seed);
+    let draws = &mut Draws::new(seed);
     let gravity = [0, 0, -9_800][draws.below(3) as usize];
     let rate = rate(draws);
     let mut recorder = world(draws, rate, gravity);
@@ -244,7 +216,7 @@ fn record(seed: u64) -> Vec<u8> {
 /// A recorded world in which a kinematic wall presses bodies against a static one until they have half the room that they
 /// need, and goes back; some are under a lid, and what bounces strikes the others.
 fn press(seed: u64) -> Vec<u8> {
-    let draws = &mut Draws(seed);
+    let draws = &mut Draws::new(seed);
     let rate = rate(draws);
     let mut recorder = world(draws, rate, -9_800);
     recorder.create_body(&wall([0, -1000], [40_000, 2000])).expect("a floor");
@@ -292,7 +264,7 @@ fn press(seed: u64) -> Vec<u8> {
 
 /// A recorded world of a rough box on a slope.
 fn lean(seed: u64) -> Vec<u8> {
-    let draws = &mut Draws(seed);
+    let draws = &mut Draws::new(seed);
     let rate = rate(draws);
     let mut recorder = world(draws, rate, -9_800);
     let angle = Angle::from_bits(draws.between(-12_000, 12_000) << 32);
@@ -315,7 +287,7 @@ fn lean(seed: u64) -> Vec<u8> {
 /// A recorded world of a wheel that is hard to turn, and of what bounces off it: what w weighs of that wheel is far more than
 /// 64 bits hold.
 fn wheel(seed: u64) -> Vec<u8> {
-    let draws = &mut Draws(seed);
+    let draws = &mut Draws::new(seed);
     let rate = rate(draws);
     let mut recorder = world(draws, rate, 0);
     let collider = |shape: Shape| ColliderDef {
