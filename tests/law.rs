@@ -119,7 +119,9 @@ fn kernels_give_what_plain_integers_give() {
 
 #[test]
 fn goldens_play_alike_in_python() {
-    python("run.py", &[], "");
+    if let Some(said) = python("run.py", &[], "") {
+        assert!(said.contains("sleep: 720 ticks the same"), "{said}");
+    }
 }
 
 /// A quantity with 32 or 48 fraction bits, of thousandths.
@@ -335,6 +337,9 @@ fn compare(name: &str, seeds: std::ops::RangeInclusive<u64>, record: impl Fn(u64
         })
         .collect();
     let said = python("run.py", &files, "");
+    if let Some(said) = &said {
+        assert_eq!(said.matches(" ticks the same").count(), files.len(), "{said}");
+    }
     // Kept where the test fails.
     std::fs::remove_dir_all(&folder).expect("the folder is there");
     said
