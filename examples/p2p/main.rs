@@ -18,6 +18,10 @@ use peer::Role;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+/// The queue of inputs of ggrs has 128 places, and panics at what does not fit: seen with a delay of 60 ticks.
+const DELAY_MAX: usize = 30;
+const WINDOW_MAX: usize = 60;
+
 const HELP: &str = "\
 A match of two to four processes over UDP on the loopback: prediction, rollback, desync detection, and a network that
 loses, doubles, delays and reorders packets. The confirmed states of all are compared at every tick.
@@ -26,9 +30,9 @@ loses, doubles, delays and reorders packets. The confirmed states of all are com
 
 --players N       2 to 4 (3)
 --ticks N         length of the match, 60 ticks a second (36000)
---window N        how many ticks are predicted at most (8). 0 and 1 predict none: lockstep, for which see --delay. With 0
-                  ggrs saves no states and so compares no checksums, with 1 it does
---delay N         input delay in ticks (0); for lockstep as many as a packet needs, such as 4
+--window N        how many ticks are predicted at most, 0 to 60 (8). 0 and 1 predict none: lockstep, for which see --delay.
+                  With 0 ggrs saves no states and so compares no checksums, with 1 it does
+--delay N         input delay in ticks, 0 to 30 (0); for lockstep as many as a packet needs, such as 4
 --loss N          of a thousand packets so many are lost (50)
 --double N        of a thousand packets so many come twice (20)
 --hold A-B        packets are held back by A to B polls, so that they overtake each other (1-4)
@@ -126,6 +130,16 @@ fn parse(arguments: &[String]) -> Result<Options, String> {
     }
     if options.weather.loss > 500 || options.weather.delay.0 > options.weather.delay.1 {
         return Err("of a thousand packets at most 500 are lost, and A of --hold is at most B".into());
+    }
+    if options.ticks == 0 {
+        return Err("a match of 0 ticks has nothing to compare".into());
+    }
+    if options.delay > DELAY_MAX || options.window > WINDOW_MAX {
+        return Err(format!("--delay is at most {DELAY_MAX} ticks, --window at most {WINDOW_MAX}"));
+    }
+    let named = [options.fault.map(|(player, _)| player), options.other_law, options.other_scene];
+    if let Some(player) = named.into_iter().flatten().find(|player| *player >= options.players) {
+        return Err(format!("there is no player {player}, only 0 to {}", options.players - 1));
     }
     Ok(options)
 }

@@ -305,11 +305,13 @@ fn pace(session: &mut P2PSession<Net<Arena>>, spectator: Option<usize>, over: &A
 fn report(role: Role, lockstep: &Lockstep<Arena>, waits: u64, tally: Tally) {
     let Tally { received, lost, doubled, overtaken } = tally;
     println!(
-        "{}: {} ticks by {} steps, {waits} waits, hits {:?}; {received} packets, {lost} lost, {doubled} doubled, {overtaken} overtaken",
+        "{}: {} ticks by {} steps, {waits} waits, hits {:?} by tick {}; {received} packets, {lost} lost, {doubled} doubled, {overtaken} overtaken",
         role.name(),
         lockstep.settled(),
         lockstep.steps(),
+        // Of the state that is shown, which is some predicted ticks ahead: by how many, and of what, peers differ.
         lockstep.game().hits(),
+        lockstep.world().tick(),
     );
     println!("done");
 }

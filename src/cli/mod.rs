@@ -7,7 +7,7 @@ mod run;
 mod table;
 mod verify;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::fmt;
 use std::io::{IsTerminal, Read, Write};
 use std::process::ExitCode;
@@ -106,16 +106,21 @@ fn usage(error: &clap::Error) -> Failure {
             "a command is missing: run, verify, diff, info, scenes or record; see `tamias2d --help`",
         );
     }
+    // The command's own help, if there is one by its name: `tamias2d run --help`.
+    let named = std::env::args_os().nth(1).filter(|name| Cli::command().find_subcommand(name).is_some());
+    let help = named.map_or(String::new(), |name| format!(" {}", name.to_string_lossy()));
     let text = error.to_string();
     let lines: Vec<&str> = text
         .lines()
         .take_while(|line| !line.starts_with("Usage") && !line.starts_with("For more"))
         .map(str::trim)
         .collect();
-    let lines: Vec<&str> = lines.into_iter().filter(|line| !line.is_empty()).collect();
-    let words = lines.join("; ");
+    // How to pass a text that begins with a dash is no help to who gave a negative number.
+    let lines: Vec<&str> =
+        lines.into_iter().filter(|line| !line.is_empty() && !line.starts_with("tip: to pass")).collect();
+    let words = lines.join("; ").replace(":; ", ": ");
     let words = words.trim_start_matches("error: ").trim_end_matches("; ");
-    Failure::usage(format_args!("{words}; see `tamias2d --help`"))
+    Failure::usage(format_args!("{words}; see `tamias2d{help} --help`"))
 }
 
 fn execute(command: Command) -> Result<(), Failure> {

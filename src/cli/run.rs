@@ -34,20 +34,26 @@ A scene:
     \"commands\": [
       { \"tick\": 30, \"do\": { \"apply_impulse\": { \"body\": \"left\", \"impulse\": [0, 5] } } } ] }
 
-Only name, tick_rate and bodies are needed; other keys are refused. SI units, angles in radians.
-  scene      name, tick_rate, bodies, substeps, integrator (forest_ruth, symplectic_euler),
-             gravity, unit_shift (contacts are solved in units of 2^k m: about 6 for pixels),
-             sleeping (true, or { speed, time }: what is slower for so long falls asleep),
-             attractors, commands, ticks (length of a recording), about
-  body       name, kind (dynamic, kinematic, static), position, angle (0 to 2π), velocity,
-             angular_velocity, force, torque, mass, inertia, center (of mass), fixed_rotation,
-             linear_damping, angular_damping, mu, user_data, allow_sleep, colliders
+Only name, tick_rate and bodies are needed; other keys are refused. SI units, angles in radians;
+in brackets what is accepted, and after = what stands for a key that is left out, else 0 or none.
+  scene      name, tick_rate (15 to 1000 ticks per second), bodies, substeps (1 to 64) = 10,
+             integrator (forest_ruth, symplectic_euler) = forest_ruth, gravity,
+             unit_shift (k, 0 to 10: contacts are solved in units of 2^k m, about 6 for pixels),
+             sleeping (true, or { speed, time }: what is slower for so long falls asleep; true is
+             0.05 m/s and 0.5 s) = false, attractors, commands,
+             ticks (length of a recording; `run` goes by --ticks) = 600, about
+  body       name = its index, kind (dynamic, kinematic, static) = dynamic, position,
+             angle (0 to 2π), velocity, angular_velocity, force, torque, mass = by its colliders'
+             densities, or 1, inertia = by its colliders, or mass times 1 m², center (of mass) = of
+             its colliders, fixed_rotation = false, linear_damping, angular_damping (0 to 1000 1/s),
+             mu (G M, m³/s²), user_data, allow_sleep = true, colliders
   collider   one of box ([width, height]), polygon (3 to 8 vertices, convex) and circle (radius);
-             offset, angle, density, restitution (0 to 1), friction, filter (category, mask),
-             sensor (true: it only reports overlaps)
-  attractor  name, position, mu
+             offset, angle, density (kg/m²) = 1, restitution (0 to 1), friction (0 to 100) = 0.6,
+             filter (category = 1, mask = all bits), sensor (true: it only reports overlaps)
+  attractor  name, position, mu (m³/s²)
 
-Commands, before the step of their tick; \"body\" and \"attractor\" are a name or an index:
+Commands, before the step of their tick (none where the run ends sooner); \"body\" and \"attractor\"
+are a name or an index:
   create_body (a body), destroy_body, set_kind, set_position, set_angle, set_velocity,
   set_angular_velocity, set_force, set_torque, set_mass (mass, inertia), set_fixed_rotation
   (fixed), set_damping (linear, angular), set_mu, set_user_data, apply_force (force, point),

@@ -66,7 +66,8 @@ impl Verify {
             collect(path, &mut files);
         }
         if files.is_empty() {
-            return Err(Failure::usage("there is no *.replay file in what was given"));
+            let shown: Vec<String> = self.paths.iter().map(|path| path.display().to_string()).collect();
+            return Err(Failure::usage(format_args!("there is no *.replay file in {}", shown.join(", "))));
         }
         if let (Some(_), [_, _, ..]) = (&self.evidence, files.as_slice()) {
             return Err(Failure::usage("--evidence is of one replay, and there are several"));

@@ -3,8 +3,9 @@
 //! ## What is promised
 //!
 //! * **The same world and the same commands give the same bits**, tick for tick: on 32 and 64 bits, little- and big-endian, with and
-//!   without AVX2, in debug and release builds, whatever the compiler. There are no floats in a step, no clocks, no threads, no
-//!   addresses, no hash maps.
+//!   without AVX2, in debug and release builds, whatever the compiler, on one thread or several
+//!   ([`Threads`](crate::Threads)). There are no floats in a step, no clocks, no addresses, no hash maps, and nothing that
+//!   could tell which thread was first.
 //! * **A world that was saved, sent, loaded, copied or rolled back goes on as the one it was**: there is no state outside what
 //!   [`World::save`](crate::World::save) writes. Ids come out the same too.
 //! * **The hash covers all of it.** Two worlds with one [`World::hash`](crate::World::hash) go on alike; those that will not, differ in it

@@ -155,7 +155,7 @@ impl fmt::Display for ReplayError {
                 write!(f, "replay corrupt at tick {tick}, in the record at byte {offset}: {error}")
             }
             ReplayError::Truncated { ticks, offset } => {
-                write!(f, "replay truncated at byte {offset}, after {ticks} whole ticks, which played well")
+                write!(f, "replay truncated at byte {offset}, after {ticks} whole ticks")
             }
             ReplayError::Trailing { offset } => write!(f, "unexpected bytes after the replay's end at byte {offset}"),
             ReplayError::Refused { tick, index, error } => {

@@ -27,8 +27,9 @@ impl Scene {
     pub fn parse(text: &str) -> Result<Scene, SceneError> {
         let mut json = serde_json::Deserializer::from_str(text);
         let Object(file): Object<SceneJson> = serde_path_to_error::deserialize(&mut json).map_err(|error| {
+            // "." is the scene itself, "?" a place that the reader did not come to: neither says anything.
             let path = error.path().to_string();
-            SceneError::new(if path == "." { String::new() } else { path }, error.inner())
+            SceneError::new(if path == "." || path == "?" { String::new() } else { path }, error.inner())
         })?;
         json.end().map_err(|error| SceneError::new("", error))?;
         let def = WorldDef {
