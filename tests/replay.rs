@@ -897,6 +897,27 @@ fn every_truncation_and_every_flipped_bit_of_keyframes_parts_and_evidence_is_det
     }
 }
 
+/// The same of a replay as it lies in the repository, the smallest one.
+#[test]
+fn every_truncation_and_every_flipped_bit_of_a_golden_is_detected() {
+    let mut file = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/replays/tc11c.replay")).expect("a golden");
+    assert_eq!(verify(&file).expect("it plays").ticks, 420);
+    let whole = |bytes: &[u8]| Player::new(bytes).and_then(Player::inspect).map(drop);
+    whole(&file).expect("it is whole");
+    for length in 0..file.len() {
+        assert!(whole(&file[..length]).is_err(), "cut at {length}");
+    }
+    for at in 0..file.len() {
+        for bit in 0..8 {
+            file[at] ^= 1 << bit;
+            assert!(whole(&file).is_err(), "byte {at} bit {bit}");
+            // Played as well, of each byte one.
+            assert!(bit != at % 8 || verify(&file).is_err(), "byte {at} bit {bit} plays");
+            file[at] ^= 1 << bit;
+        }
+    }
+}
+
 /// At 60 ticks a second and 100 bodies that do nothing, with parts and keyframes.
 #[test]
 fn an_idle_game_records_less_than_a_kilobyte_a_second() {
