@@ -7,8 +7,12 @@ use super::kernel::Kernel;
 use super::mover::Mover;
 use super::rows::{Block, LANES, Lane, Row};
 use super::scales::Scales;
+use crate::contact::Contact;
 use crate::num::{lane, sin_cos};
-use crate::{Acceleration, Angle, BodyDef, BodyKind, ColliderDef, Commands, Length, Shape, Vec2, World, WorldDef};
+use crate::{
+    Acceleration, Angle, AngularVelocity, BodyDef, BodyKind, ColliderDef, Commands, Length, Shape, Vec2, World,
+    WorldDef,
+};
 
 /// Numbers that follow from a seed: a linear congruential generator's upper bits (Knuth, MMIX).
 pub(super) struct Dice(pub(super) u64);
@@ -252,6 +256,30 @@ fn what_turns_fast_across_a_gap_has_no_rows() {
         assert!(has_row(&format!("{sign}1.45"), "-0.1"));
     }
     assert!(has_row("0", "0"));
+}
+
+/// The speed and the overlap that these begin at are not yet of them.
+#[test]
+fn what_swings_and_what_is_hard_begins_beyond_a_limit() {
+    let limit = Scales::new(60, 10, 0).swinging();
+    // A disc of half a metre: its rim has that speed at twice as many radians a second.
+    let has_row = |omega: i64| {
+        let mut world = World::new(&WorldDef::default()).unwrap();
+        let side = |side: i64| Length::from_bits(side << 32);
+        let floor = vec![ColliderDef::new(Shape::Box { width: side(9), height: side(1) })];
+        world.create_body(&BodyDef { kind: BodyKind::Static, colliders: floor, ..BodyDef::default() }).unwrap();
+        let disc = vec![ColliderDef::new(Shape::Circle { radius: Length::from_bits(1 << 31) })];
+        let position = Vec2::new(Length::ZERO, "1.01".parse().unwrap());
+        let angular_velocity = AngularVelocity::from_bits(omega);
+        world.create_body(&BodyDef { position, angular_velocity, colliders: disc, ..BodyDef::default() }).unwrap();
+        world.step();
+        assert_eq!(world.touch.pairs.len(), 1, "they are near");
+        world.touch.pairs[0].row != crate::contact::NEW
+    };
+    assert_eq!([limit * 2, limit * 2 + 2].map(has_row), [true, false]);
+    let scales = Scales::new(60, 10, 0);
+    let hard = |overlap: i64| super::island::hard(overlap, &Contact::default(), &scales);
+    assert_eq!([scales.deep, scales.deep + 1].map(hard), [false, true]);
 }
 
 /// A world whose units are 2^k times as large measures speeds in them.
