@@ -143,7 +143,7 @@ fn refused_collisions_say_why() {
     assert_eq!(text(&b, &light, up, e), "mass 0 kg is outside 0.000001 … 2100000000 kg");
     let thin = Striker { inertia: Some(Inertia::ZERO), ..a };
     assert_eq!(text(&thin, &b, up, e), "inertia 0 kg m² is outside 1e-12 … 1e18 kg m²");
-    let longest = Striker { arm: at(32_768.0, -32_768.0), ..a };
+    let longest = Striker { arm: at(32_768.0, -32_768.0), angular_velocity: num("0"), ..a };
     assert!(impact(&longest, &b, up, e).is_ok());
     let long = Striker { arm: at(32_769.0, 0.0), ..a };
     assert_eq!(impact(&long, &b, up, e), Err(ImpactError::Arm { value: num("32769") }));
