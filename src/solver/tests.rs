@@ -293,3 +293,26 @@ fn speeds_grow_with_the_unit() {
         assert_eq!(speeds(k), speeds(0).map(|speed| speed << k), "{k}");
     }
 }
+
+/// Where something may strike, it is kept where all bodies were when the tick began, for evidence to show.
+#[test]
+fn where_a_tick_began_is_kept_of_all_bodies() {
+    let mut world = World::new(&WorldDef::default()).unwrap();
+    for (x, vx) in [("0", "10"), ("1.01", "-10"), ("50", "3")] {
+        let at = |x: &str| Vec2::new(x.parse().unwrap(), "0.25".parse().unwrap());
+        let disc = vec![ColliderDef::new(Shape::Circle { radius: Length::from_bits(1 << 31) })];
+        let velocity = Vec2::new(vx.parse().unwrap(), "0.5".parse().unwrap());
+        world.create_body(&BodyDef { position: at(x), velocity, colliders: disc, ..BodyDef::default() }).unwrap();
+    }
+    let columns = |world: &World| {
+        let bodies = &world.bodies;
+        [bodies.x.bits(), bodies.y.bits(), bodies.vx.bits(), bodies.vy.bits()].map(<[i64]>::to_vec)
+    };
+    let before = columns(&world);
+    world.step();
+    assert_ne!(columns(&world), before);
+    let kept: Vec<_> = world.solver.timeline.past.rows().map(|state| [state.x, state.v]).collect();
+    let [x, y, vx, vy] = before;
+    let expected: Vec<_> = (0..3).map(|slot| [[x[slot], y[slot]], [vx[slot], vy[slot]]]).collect();
+    assert_eq!(kept, expected);
+}
