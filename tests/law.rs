@@ -286,6 +286,27 @@ fn lean(seed: u64) -> Vec<u8> {
     recorder.finish().expect("memory")
 }
 
+/// A recorded world of a box on a thousandth of its mass, both some millimetres beside a wall: rows that push nothing, of an
+/// island that is solved directly.
+fn beside(seed: u64) -> Vec<u8> {
+    let draws = &mut Draws::new(seed);
+    let rate = rate(draws);
+    let mut recorder = world(draws, rate, -9_800);
+    recorder.create_body(&wall([0, -500], [20_000, 1000])).expect("a floor");
+    recorder.create_body(&wall([1000 + draws.between(3, 12), 1000], [1000, 2000])).expect("a wall");
+    for (y, mass) in [(500, 1000), (1500, 1_000_000)] {
+        let shape = Shape::Box { width: length(1000), height: length(1000) };
+        let position = Vec2::new(Length::ZERO, length(y));
+        let mass = Some(Mass::from_bits(i128::from(mass) * (1i128 << 64) / 1000));
+        let colliders = vec![ColliderDef::new(shape)];
+        recorder.create_body(&BodyDef { position, mass, colliders, ..BodyDef::default() }).expect("a box");
+    }
+    for _ in 0..200 {
+        recorder.step();
+    }
+    recorder.finish().expect("memory")
+}
+
 /// A recorded world of a wheel that is hard to turn, and of what bounces off it: what w weighs of that wheel is far more than
 /// 64 bits hold.
 fn wheel(seed: u64) -> Vec<u8> {
@@ -362,6 +383,11 @@ fn what_comes_to_repose_plays_alike_in_python() {
     if let Some(said) = compare("lean", 1..=8, lean) {
         assert!(said.contains(" in repose"), "not reached: {said}");
     }
+}
+
+#[test]
+fn what_is_solved_directly_beside_a_wall_plays_alike_in_python() {
+    compare("beside", 1..=3, beside);
 }
 
 #[test]

@@ -77,6 +77,6 @@ def spread(places, edges):
 def same(pair):
     """Whether a contact is what it was but for its impulses."""
     found, last = outcome(pair), pair.known and pair.known.record
-    if not lasts(found) or not last:
-        return not lasts(found) and not last
-    return (bool(found.touching), found.mode) == (bool(last.touching), last.mode)
+    # None is like one that does not touch and was swept.
+    before = (bool(last.touching), last.mode) if last else (False, 0)
+    return bool(lasts(found)) == bool(last) and (bool(found.touching), found.mode) == before
