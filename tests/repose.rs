@@ -225,19 +225,34 @@ fn what_is_thrown_at_what_reposes_within_a_tick_meets_what_it_would_have_met() {
     }
 }
 
-/// Without the wall it rests after 49 to 69 ticks.
+/// Five boxes of 1 m, the one on top heavy; and a wall beside them, if there is to be one.
+fn loaded_stack(top: f64, gap: Option<f64>) -> World {
+    let mut world = world(0.0, -9.81);
+    floor(&mut world);
+    for row in 0..5 {
+        let mass = if row == 4 { top } else { 1.0 };
+        add(&mut world, weighing(solid(0.0, 0.5 + f64::from(row), rectangle(1.0, 1.0)), mass));
+    }
+    if let Some(gap) = gap {
+        add(&mut world, fixed(1.0 + gap, 2.5, rectangle(1.0, 5.0)));
+    }
+    world
+}
+
+/// Such stacks are solved directly.
 #[test]
-#[ignore = "does not hold: what is solved directly does not repose beside what it does not touch"]
+fn a_loaded_stack_rests() {
+    for top in [100.0, 1000.0] {
+        println!("{top} kg: {} ticks", until_still(&mut loaded_stack(top, None), 100));
+        println!("{top} kg, a wall 3 cm beside it: {} ticks", until_still(&mut loaded_stack(top, Some(0.03)), 100));
+    }
+}
+
+#[test]
+#[ignore = "not held: moves after 3600 ticks, for what it does not touch is news in each: cargo test --release --test repose -- --ignored a_loaded_stack"]
 fn a_loaded_stack_rests_beside_a_wall_that_it_does_not_touch() {
     for (top, gap) in [(100.0, 0.001), (100.0, 0.015), (1000.0, 0.005)] {
-        let mut world = world(0.0, -9.81);
-        floor(&mut world);
-        for row in 0..5 {
-            let mass = if row == 4 { top } else { 1.0 };
-            add(&mut world, weighing(solid(0.0, 0.5 + f64::from(row), rectangle(1.0, 1.0)), mass));
-        }
-        add(&mut world, fixed(1.0 + gap, 2.5, rectangle(1.0, 5.0)));
-        until_still(&mut world, 3600);
+        until_still(&mut loaded_stack(top, Some(gap)), 3600);
     }
 }
 
@@ -557,7 +572,7 @@ fn rooms_go_on_as_if_all_had_been_computed() {
 }
 
 #[test]
-#[ignore = "minutes: cargo test --release --test repose -- --ignored"]
+#[ignore = "minutes: cargo test --release --test repose -- --ignored many_rooms"]
 fn many_rooms_and_grids_go_on_as_if_all_had_been_computed() {
     rooms(0..600, 3000);
     grids(600..20_000, 120);
