@@ -134,7 +134,7 @@ impl Solver {
         direct.build(islands, &Rows { places, modes, seats: &colors.seats, blocks }, movers, mobilities, scales);
     }
 
-    /// Notes where the tick begins, of what will be elsewhere when that is asked for.
+    /// Notes where the tick begins: bodies have moved by the time rows and impacts ask for it.
     fn look_back(&mut self, bodies: &Bodies, drive: &Drive) {
         let Solver { mobilities, scales, movers, before, free, fast, timeline, repose, .. } = self;
         movers.look_brisk(repose.slots(), drive, scales);
